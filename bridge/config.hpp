@@ -1,0 +1,114 @@
+// What the YAML configuration says, checked and complete. config.cpp is the only file that sees yaml-cpp.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "transports/transport.hpp"
+
+namespace meca::bridge {
+
+enum class RateKind : std::uint8_t { kOff, kEveryCycle, kOnChange, kPeriod };
+
+struct TopicConfig {
+  RateKind rate = RateKind::kOnChange;
+  std::chrono::nanoseconds period{};  // kPeriod
+  bool reliable = true;               // writers offer RELIABLE unless told otherwise
+  bool transient_local = true;        // late joiners get the last value
+  int depth = 1;                      // KEEP_LAST depth per instance
+};
+
+struct DdsConfig {
+  int domain = 0;                          // 0..232
+  std::string participant_name = "meca-bridge";
+  std::string topic_prefix = "meca500/";
+  std::vector<std::string> interfaces;     // IPv4 addresses; empty = all
+  bool shared_memory = true;
+  std::map<std::string, TopicConfig> topics;  // every published topic by its name without prefix, defaults filled in
+};
+
+struct BuiltinConfig {
+  std::string product = "R4";              // R3 | R4
+  std::string firmware = "11.3";           // 9.x, 10.x or 11.x: what the model behaves like
+  std::uint32_t serial_number = 1;
+  bool instant_homing = false;             // activation and homing without waiting
+  bool noise = true;
+};
+struct EthernetIpConfig {
+  std::string address;                     // host name or IPv4 of the robot
+  std::uint16_t tcp_port = 44818;
+};
+struct EthercatConfig {
+  std::string interface;                   // network interface of the segment
+  std::uint16_t position = 0;              // position on the segment, 0 = first
+};
+struct ProfinetConfig {
+  std::string interface;
+  std::string station_name;
+  bool big_endian = true;                  // not published by the vendor
+};
+
+enum class TransportType : std::uint8_t { kBuiltin, kEthernetIp, kEthercat, kProfinet };
+
+struct ControlConfig {
+  bool enabled = true;                     // false: this bridge only monitors this robot
+  std::chrono::nanoseconds lease = std::chrono::milliseconds(100);
+  std::chrono::nanoseconds velocity_lease = std::chrono::milliseconds(50);
+  bool allow_brakes = false;
+};
+
+struct RobotConfig {
+  std::string name;
+  TransportType type = TransportType::kBuiltin;
+  BuiltinConfig builtin;
+  EthernetIpConfig ethernet_ip;
+  EthercatConfig ethercat;
+  ProfinetConfig profinet;
+  std::chrono::nanoseconds cycle = std::chrono::milliseconds(1);
+  transports::FirmwareVersion firmware{};  // all 0 = auto
+  std::array<std::uint32_t, 4> dynamic_data{};  // requested types; 0 = automatic
+  ControlConfig control;
+};
+
+struct LogConfig {
+  std::string level = "info";
+};
+
+struct RealtimeConfig {
+  int priority = 0;                        // SCHED_FIFO 1..99; 0 = leave it
+  bool lock_memory = false;
+  std::vector<int> cpus;                   // affinity of the cycle threads; empty = all
+};
+
+struct Config {
+  DdsConfig dds;
+  LogConfig log;
+  RealtimeConfig realtime;
+  std::vector<RobotConfig> robots;
+};
+
+// One mistake: where, what, and what instead. line and column count from 1; 0 = the file as a whole.
+struct ConfigError {
+  std::string file;
+  int line = 0, column = 0;
+  std::string key;                         // "robots[0].transport.adress"
+  std::string message;
+};
+std::string to_string(const ConfigError& error);  // file:line:col: key: message
+
+struct ConfigResult {
+  std::optional<Config> config;            // empty when there are errors
+  std::vector<ConfigError> errors;         // all of them, in file order
+};
+
+ConfigResult load_config(const std::filesystem::path& file);
+ConfigResult parse_config(std::string_view yaml, const std::string& file_name);
+
+}  // namespace meca::bridge

@@ -1,0 +1,115 @@
+// What travels between DDS clients and the control machines: requests in, receipts and control state out.
+// Fixed-size and trivially copyable, so that they pass through the queues without allocation. No DDS types here;
+// the names mirror idl/control.idl.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+namespace meca::control {
+
+template <std::size_t N>
+class FixedString {
+ public:
+  constexpr FixedString() = default;
+  // Longer text is cut at N bytes; whoever lets outside text in checks its length first.
+  constexpr FixedString(std::string_view text) noexcept : size_(std::min(text.size(), N)) {
+    std::copy_n(text.data(), size_, data_.data());
+  }
+  constexpr operator std::string_view() const noexcept { return {data_.data(), size_}; }
+  constexpr std::string_view view() const noexcept { return *this; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+  friend constexpr bool operator==(const FixedString& a, const FixedString& b) noexcept { return a.view() == b.view(); }
+
+ private:
+  std::array<char, N> data_{};
+  std::size_t size_ = 0;
+};
+
+using ClientName = FixedString<63>;
+using ParticipantId = std::array<std::byte, 12>;  // DDS GUID prefix: which participant wrote the sample
+
+enum class CommandKind : std::uint8_t {
+  kTakeControl, kReleaseControl, kActivate, kDeactivate, kHome, kResetError, kPauseMotion, kResumeMotion,
+  kClearMotion, kSimMode, kRecoveryMode, kBrakes, kDynamicData, kSetHostTime, kMotion,
+};
+
+enum class LossPolicy : std::uint8_t { kStopMotion, kFinishMotion };
+
+struct CommandRequest {
+  ClientName client;
+  ParticipantId participant{};
+  std::uint64_t command_id = 0;
+  CommandKind kind = CommandKind::kTakeControl;
+  std::uint32_t motion_command_id = 0;
+  std::array<double, 6> arguments{};
+  std::uint8_t argument_count = 0;
+  bool use_variables = false;
+  bool report_completion = false;
+  LossPolicy on_loss = LossPolicy::kStopMotion;
+};
+
+enum class VelocityKind : std::uint8_t { kMoveJointsVel, kMoveLinVelWrf, kMoveLinVelTrf };
+
+struct VelocityRequest {
+  ClientName client;
+  ParticipantId participant{};
+  std::uint64_t sequence_number = 0;
+  VelocityKind kind = VelocityKind::kMoveJointsVel;
+  std::array<float, 6> velocity{};
+};
+
+struct LeaseRenewal {
+  ClientName client;
+  ParticipantId participant{};
+  std::uint64_t sequence_number = 0;
+};
+
+// The bridge is asked to stop: stop image, pending commands end as REASON_SHUTDOWN.
+struct ShutdownRequest {};
+
+using Request = std::variant<CommandRequest, VelocityRequest, LeaseRenewal, ShutdownRequest>;
+
+enum class ReceiptState : std::uint8_t {
+  kAccepted, kSent, kAcknowledged, kCompleted, kDiscarded, kRejected, kAborted,
+};
+constexpr bool is_terminal(ReceiptState s) noexcept { return s >= ReceiptState::kCompleted; }
+
+enum class Reason : std::uint8_t {
+  kNone, kNotOwner, kMonitoringOnly, kNoLink, kFirmwareUnknown, kUnknownCommand, kArgumentCount, kArgumentRange,
+  kNotActivated, kNotHomed, kWrongState, kRobotError, kSafetyStop, kPaused, kQueueFull, kTimeOut, kLinkLost,
+  kOwnerLost, kCleared, kNotAllowed, kShutdown, kDuplicate,
+};
+
+struct Receipt {
+  ClientName client;
+  std::uint64_t command_id = 0;
+  ReceiptState state = ReceiptState::kAccepted;
+  Reason reason = Reason::kNone;
+  std::uint16_t robot_error = 0;
+  // What the sentence for people needs; the publisher writes the sentence (receipt_text.hpp).
+  CommandKind kind = CommandKind::kTakeControl;
+  std::uint32_t motion_command_id = 0;
+  std::uint8_t argument = 0;            // kArgumentRange: index; kArgumentCount: how many came
+  double value = 0, minimum = 0, maximum = 0;
+  ClientName other;                     // kNotOwner: who has control
+};
+
+struct ControlState {
+  bool owned = false;
+  ClientName owner;
+  ParticipantId owner_participant{};
+  std::int64_t since_unix_ns = 0;
+  std::uint32_t lease_ms = 0;
+  LossPolicy on_loss = LossPolicy::kStopMotion;
+  bool monitoring_only = false;
+  Receipt last_refusal;                 // client empty: none yet
+  ClientName last_owner;
+  enum class Loss : std::uint8_t { kNone, kReleased, kLeaseExpired, kLinkLost, kShutdown } last_loss = Loss::kNone;
+};
+
+}  // namespace meca::control

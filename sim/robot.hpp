@@ -1,0 +1,56 @@
+// The simulated Meca500: a model stepped by time, without threads, clocks or I/O. It takes the decoded output image and
+// answers with the input image of the robot manual (firmware 11.x, section 4), stricter than the real one.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+
+#include "transports/image/image.hpp"
+
+namespace meca::sim {
+
+using Time = std::chrono::nanoseconds;
+
+enum class Product : std::uint8_t { kMeca500R3 = 3, kMeca500R4 = 4 };
+
+struct RobotOptions {
+  Product product = Product::kMeca500R4;
+  image::Layout layout = image::Layout::kFirmware11;  // firmware generation the model behaves like
+  std::uint16_t firmware_minor = 3, firmware_patch = 0, firmware_build = 1;
+  std::uint32_t serial_number = 1;
+  // Not published by the vendor; inferred defaults (spec 6.5).
+  Time activation_time = std::chrono::seconds(2);
+  Time homing_time = std::chrono::seconds(4);
+  Time deactivation_time = std::chrono::milliseconds(500);
+  bool noise = true;               // plausible noise on actual values (seeded)
+  std::uint64_t seed = 1;
+};
+
+class Robot {
+ public:
+  explicit Robot(const RobotOptions& options = {});
+  ~Robot();
+  Robot(Robot&&) noexcept;
+  Robot& operator=(Robot&&) noexcept;
+
+  // One bus cycle: takes the outputs received in it and advances the model by `dt` (> 0). Does not allocate.
+  void step(const image::Outputs& outputs, Time dt) noexcept;
+  // No output image arrived in this cycle: the model only advances (velocity time-out runs).
+  void step_without_outputs(Time dt) noexcept;
+
+  const image::Inputs& inputs() const noexcept;  // as of the last step
+
+  // What tests and users may do to a robot.
+  void press_e_stop() noexcept;
+  void release_e_stop() noexcept;
+  void press_p_stop2() noexcept;
+  void release_p_stop2() noexcept;
+  void raise_error(std::uint16_t code) noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace meca::sim

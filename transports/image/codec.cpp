@@ -1,0 +1,1 @@
+#include "transports/image/codec.hpp"
