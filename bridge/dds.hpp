@@ -32,7 +32,9 @@ struct Qos {
   Reliability reliability = Reliability::kReliable;
   Durability durability = Durability::kVolatile;
   int depth = 1;                         // KEEP_LAST depth per instance; 0 = KEEP_ALL within max_samples
-  int max_samples = 0;                   // resource limit; 0 = the vendor's default
+  int max_samples = 0;                   // KEEP_ALL: at most so many per instance; 0 = unlimited
+  int max_instances = 0;                 // 0 = unlimited; a reader with a limit forgets dead instances first
+  std::chrono::nanoseconds lifespan{};   // writers: samples older than this are forgotten; 0 = never
 };
 
 struct SampleInfo {
@@ -96,7 +98,8 @@ class Participant {
   template <typename T>
   Reader<T> create_reader(const std::string& topic, const Qos& qos);
 
-  // Waits until a reader of this participant has data or the time is over; true when there is data.
+  // Waits until a reader of this participant has data or the time is over; true when there is data. For one thread
+  // at a time, which then takes from every reader of this participant: what is left there ends the next wait at once.
   bool wait_for_data(std::chrono::nanoseconds timeout);
 
   std::array<std::byte, 12> id() const noexcept;  // GUID prefix
