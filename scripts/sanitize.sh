@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# ./meca sanitize [asan|tsan] [ctest arguments]: asan = ASan+UBSan (alignment on) over all tests;
+# tsan = clang's ThreadSanitizer over the tests where threads meet.
+. scripts/common.sh
+which=${1:-both}
+[ $# -gt 0 ] && shift
+case $which in asan | tsan | both) ;; *) die "sanitize: '$which' is not asan or tsan" ;; esac
+
+asan() {
+  need build
+  build asan
+  # Fast DDS keeps singletons until exit, so leaks are only those that LeakSanitizer can prove; its default is right.
+  UBSAN_OPTIONS=print_stacktrace=1 \
+    ctest --test-dir build/asan --output-on-failure --no-tests=error -j "$jobs" --timeout 300 "$@"
+}
+
+tsan() {
+  need build clang
+  # Only what has threads: the machines without I/O have none, and instrumenting them proves nothing.
+  build tsan meca-bridge meca-ctl tsan_tests
+  TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp halt_on_error=1 second_deadlock_stack=1" \
+    ctest --test-dir build/tsan --output-on-failure --no-tests=error -j "$jobs" --timeout 300 -L threads "$@"
+}
+
+case $which in
+  asan) asan "$@" ;;
+  tsan) tsan "$@" ;;
+  both) asan "$@" && tsan "$@" ;;
+esac
