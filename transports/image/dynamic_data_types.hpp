@@ -11,16 +11,16 @@
 namespace meca::image {
 
 struct ValueInfo {
-  std::string_view name;  // "joint 1", "x", "major version"
-  std::string_view unit;  // "deg", "mm", "%", ...; empty where it has none
+  std::string_view name;     // "joint 1", "x", "major version"
+  std::string_view unit;     // "deg", "mm", "%", ...; empty where it has none
   bool bit_pattern = false;  // the REAL slot holds the bits of a uint32 (type 3, value 1)
 };
 
 struct DynamicDataInfo {
   std::uint32_t id;
-  std::string_view name;  // "joint position (actual)"
+  std::string_view name;              // "joint position (actual)"
   std::span<const ValueInfo> values;  // the meaningful ones, at most six
-  bool on_meca500;        // false: defined for other robots only
+  bool on_meca500;                    // false: defined for other robots only
 };
 
 std::span<const DynamicDataInfo> dynamic_data_types() noexcept;

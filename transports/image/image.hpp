@@ -23,18 +23,18 @@ enum class Layout : std::uint8_t { kFirmware9, kFirmware10, kFirmware11 };
 
 // ---------------------------------------------------------------- output, host -> robot
 
-struct RobotControl {  // manual 4.4.1
-  bool deactivate{};         // level; wins over activate
-  bool activate{};           // level; confirmed by RobotStatus.activated
-  bool home{};               // level; confirmed by RobotStatus.homed
-  bool reset_error{};        // level; confirmed by error_code == 0
-  bool sim_mode{};           // level; only while deactivated
-  bool recovery_mode{};      // level
-  bool disable_ethercat{};   // firmware >= 10: leaves EtherCAT for TCP/IP
+struct RobotControl {       // manual 4.4.1
+  bool deactivate{};        // level; wins over activate
+  bool activate{};          // level; confirmed by RobotStatus.activated
+  bool home{};              // level; confirmed by RobotStatus.homed
+  bool reset_error{};       // level; confirmed by error_code == 0
+  bool sim_mode{};          // level; only while deactivated
+  bool recovery_mode{};     // level
+  bool disable_ethercat{};  // firmware >= 10: leaves EtherCAT for TCP/IP
   friend bool operator==(const RobotControl&, const RobotControl&) = default;
 };
 
-struct MotionControl {  // manual 4.4.2
+struct MotionControl {      // manual 4.4.2
   std::uint16_t move_id{};  // a change queues the command; 0 = cyclic mode (velocity)
   bool set_point{};         // must be 1 for commands to be taken
   bool pause_motion{};      // level
@@ -50,7 +50,7 @@ struct MotionCommand {  // manual 4.4.3
   friend bool operator==(const MotionCommand&, const MotionCommand&) = default;
 };
 
-struct HostTime {  // manual 4.4.4
+struct HostTime {           // manual 4.4.4
   std::uint32_t seconds{};  // Unix seconds; 0 = leave the robot's clock alone
   friend bool operator==(const HostTime&, const HostTime&) = default;
 };
@@ -61,7 +61,7 @@ struct BrakesControl {  // manual 4.4.5
   friend bool operator==(const BrakesControl&, const BrakesControl&) = default;
 };
 
-struct DynamicDataConfiguration {  // manual 4.4.6
+struct DynamicDataConfiguration {                       // manual 4.4.6
   std::array<std::uint32_t, kDynamicSlots> type_ids{};  // 0 = automatic
   friend bool operator==(const DynamicDataConfiguration&, const DynamicDataConfiguration&) = default;
 };
@@ -79,11 +79,11 @@ struct Outputs {
 // ---------------------------------------------------------------- input, robot -> host
 
 struct RobotStatus {  // manual 4.5.1
-  bool busy{};              // activating, homing or deactivating
+  bool busy{};        // activating, homing or deactivating
   bool activated{};
   bool homed{};
   bool sim_activated{};
-  bool brakes_engaged{};    // a real 9.x robot showed 1 while activated: not a readiness test
+  bool brakes_engaged{};  // a real 9.x robot showed 1 while activated: not a readiness test
   bool recovery_mode{};
   bool e_stop{};            // deprecated: use SafetyStatus
   bool collision_status{};  // firmware >= 10
@@ -93,7 +93,7 @@ struct RobotStatus {  // manual 4.5.1
   friend bool operator==(const RobotStatus&, const RobotStatus&) = default;
 };
 
-struct MotionStatus {  // manual 4.5.2
+struct MotionStatus {                    // manual 4.5.2
   std::uint32_t checkpoint_reached{};    // 16 bits in firmware 11, 32 bits before
   std::uint16_t checkpoint_discarded{};  // firmware 11; 0 before
   std::uint16_t move_id{};               // echo of the last command received
@@ -102,14 +102,14 @@ struct MotionStatus {  // manual 4.5.2
   bool eob{};
   bool eom{};
   bool cleared{};
-  bool p_stop2{};                        // deprecated: use SafetyStatus
+  bool p_stop2{};  // deprecated: use SafetyStatus
   bool excessive_torque{};
-  bool p_stop2_resettable{};             // firmware 9 only, bit 12:6
-  std::uint16_t offline_program_id{};    // 0 none, 65535 a program without cyclic id
+  bool p_stop2_resettable{};           // firmware 9 only, bit 12:6
+  std::uint16_t offline_program_id{};  // 0 none, 65535 a program without cyclic id
   friend bool operator==(const MotionStatus&, const MotionStatus&) = default;
 };
 
-struct TargetJointSet {  // manual 4.5.3
+struct TargetJointSet {           // manual 4.5.3
   std::array<float, 6> joints{};  // degrees
   friend bool operator==(const TargetJointSet&, const TargetJointSet&) = default;
 };
@@ -120,25 +120,24 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-struct TargetConfiguration {  // manual 4.5.5
+struct TargetConfiguration {                 // manual 4.5.5
   std::int8_t shoulder{}, elbow{}, wrist{};  // -1, 1; 0 near the singularity
   std::int8_t turn{};                        // -100..100
   friend bool operator==(const TargetConfiguration&, const TargetConfiguration&) = default;
 };
 
-struct RobotTimestamp {  // manual 4.5.8
+struct RobotTimestamp {          // manual 4.5.8
   std::uint32_t seconds{};       // monotonic, arbitrary reference
   std::uint32_t microseconds{};  // 0..999999
   std::uint32_t dynamic_data_update_count{};
   friend bool operator==(const RobotTimestamp&, const RobotTimestamp&) = default;
 };
 
-// The stop signals in the bit order of bytes 128-129 and 132-133 (manual 4.5.9).
+// The stop signals in the bit order of bytes 128-129 and 132-133, whose bit 3 is reserved (manual 4.5.9).
 struct StopSignals {
   bool e_stop{};
-  bool p_stop1{};                   // not on the Meca500
+  bool p_stop1{};  // not on the Meca500
   bool p_stop2{};
-  bool reserved3{};
   bool operation_mode_change{};     // not on the Meca500
   bool enabling_device_released{};  // not on the Meca500
   bool voltage_fluctuation{};       // not on the Meca500
@@ -146,7 +145,7 @@ struct StopSignals {
   bool redundancy_fault{};          // not on the Meca500
   bool standstill_fault{};          // not on the Meca500
   bool connection_dropped{};
-  bool minor_error{};               // not on the Meca500
+  bool minor_error{};  // not on the Meca500
   friend bool operator==(const StopSignals&, const StopSignals&) = default;
 };
 
@@ -158,11 +157,11 @@ struct PowerSupplyInputs {  // not on the Meca500
 struct SafetyStatus {  // manual 4.5.9; firmware >= 10
   // False when the image has no safety section (firmware 9): the zeros below then mean nothing, least of all "no stop".
   bool known{};
-  StopSignals stop;             // 1 = present or resettable, 0 = reset
-  StopSignals resettable;       // 1 = ready to be reset
+  StopSignals stop;               // 1 = present or resettable, 0 = reset
+  StopSignals resettable;         // 1 = ready to be reset
   std::uint8_t operation_mode{};  // 0 locked, 1 auto, 2 manual; not on the Meca500
-  bool reset_ready{};           // R4: Reset button may be pressed
-  bool vmotor_on{};             // motors powered
+  bool reset_ready{};             // R4: Reset button may be pressed
+  bool vmotor_on{};               // motors powered
   PowerSupplyInputs power_supply_inputs;
   friend bool operator==(const SafetyStatus&, const SafetyStatus&) = default;
 };
@@ -179,8 +178,8 @@ struct Inputs {
   TargetJointSet target_joint_set;
   Pose target_end_effector_pose;  // TRF in WRF
   TargetConfiguration target_configuration;
-  Pose target_wrf;                // WRF in BRF
-  Pose target_trf;                // TRF in FRF
+  Pose target_wrf;  // WRF in BRF
+  Pose target_trf;  // TRF in FRF
   RobotTimestamp robot_timestamp;
   SafetyStatus safety_status;
   std::array<DynamicData, kDynamicSlots> dynamic_data;
