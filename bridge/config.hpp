@@ -1,4 +1,4 @@
-// What the YAML configuration says, checked and complete. config.cpp is the only file that sees yaml-cpp.
+// What the YAML configuration says, checked and complete. config_yaml.cpp is the only file that sees yaml-cpp.
 #pragma once
 
 #include <array>
@@ -26,39 +26,39 @@ struct TopicConfig {
 };
 
 struct DdsConfig {
-  int domain = 0;                          // 0..232
+  int domain = 0;  // 0..232
   std::string participant_name = "meca-bridge";
   std::string topic_prefix = "meca500/";
-  std::vector<std::string> interfaces;     // IPv4 addresses; empty = all
+  std::vector<std::string> interfaces;  // IPv4 addresses; empty = all
   bool shared_memory = true;
   std::map<std::string, TopicConfig> topics;  // every published topic by its name without prefix, defaults filled in
 };
 
 struct BuiltinConfig {
-  std::string product = "R4";              // R3 | R4
-  std::string firmware = "11.3";           // 9.x, 10.x or 11.x: what the model behaves like
+  std::string product = "R4";     // R3 | R4
+  std::string firmware = "11.3";  // 9.x, 10.x or 11.x: what the model behaves like
   std::uint32_t serial_number = 1;
-  bool instant_homing = false;             // activation and homing without waiting
+  bool instant_homing = false;  // activation and homing without waiting
   bool noise = true;
 };
 struct EthernetIpConfig {
-  std::string address;                     // host name or IPv4 of the robot
+  std::string address;  // host name or IPv4 of the robot
   std::uint16_t tcp_port = 44818;
 };
 struct EthercatConfig {
-  std::string interface;                   // network interface of the segment
-  std::uint16_t position = 0;              // position on the segment, 0 = first
+  std::string interface;       // network interface of the segment
+  std::uint16_t position = 0;  // position on the segment, 0 = first
 };
 struct ProfinetConfig {
   std::string interface;
   std::string station_name;
-  bool big_endian = true;                  // not published by the vendor
+  bool big_endian = true;  // not published by the vendor
 };
 
 enum class TransportType : std::uint8_t { kBuiltin, kEthernetIp, kEthercat, kProfinet };
 
 struct ControlConfig {
-  bool enabled = true;                     // false: this bridge only monitors this robot
+  bool enabled = true;  // false: this bridge only monitors this robot
   std::chrono::nanoseconds lease = std::chrono::milliseconds(100);
   std::chrono::nanoseconds velocity_lease = std::chrono::milliseconds(50);
   bool allow_brakes = false;
@@ -72,7 +72,7 @@ struct RobotConfig {
   EthercatConfig ethercat;
   ProfinetConfig profinet;
   std::chrono::nanoseconds cycle = std::chrono::milliseconds(1);
-  transports::FirmwareVersion firmware{};  // all 0 = auto
+  transports::FirmwareVersion firmware{};       // all 0 = auto
   std::array<std::uint32_t, 4> dynamic_data{};  // requested types; 0 = automatic
   ControlConfig control;
 };
@@ -82,9 +82,9 @@ struct LogConfig {
 };
 
 struct RealtimeConfig {
-  int priority = 0;                        // SCHED_FIFO 1..99; 0 = leave it
+  int priority = 0;  // SCHED_FIFO 1..99; 0 = leave it
   bool lock_memory = false;
-  std::vector<int> cpus;                   // affinity of the cycle threads; empty = all
+  std::vector<int> cpus;  // affinity of the cycle threads; empty = all
 };
 
 struct Config {
@@ -98,17 +98,27 @@ struct Config {
 struct ConfigError {
   std::string file;
   int line = 0, column = 0;
-  std::string key;                         // "robots[0].transport.adress"
+  std::string key;  // "robots[0].transport.adress"
   std::string message;
 };
 std::string to_string(const ConfigError& error);  // file:line:col: key: message
 
 struct ConfigResult {
-  std::optional<Config> config;            // empty when there are errors
-  std::vector<ConfigError> errors;         // all of them, in file order
+  std::optional<Config> config;       // empty when there are errors
+  std::vector<ConfigError> errors;    // all of them, in file order
+  std::vector<ConfigError> warnings;  // runs, but probably not as meant
 };
 
+// Neither throws: what cannot be read is an error in the result. The file may have up to 1 MiB.
 ConfigResult load_config(const std::filesystem::path& file);
 ConfigResult parse_config(std::string_view yaml, const std::string& file_name);
+
+// "11", "11.3", "11.3.3.12637"; what is left out is 0. Empty for anything else.
+std::optional<transports::FirmwareVersion> parse_firmware(std::string_view text);
+
+std::string_view to_string(TransportType type);            // "builtin", "ethernet_ip", "ethercat", "profinet"
+bool is_available(TransportType type);                     // this build can run it
+std::string to_string(const TopicConfig& topic);           // "every 10ms, reliable, transient_local, depth 1"
+std::string to_string(std::chrono::nanoseconds duration);  // "500us", "1ms", "1.5ms"
 
 }  // namespace meca::bridge

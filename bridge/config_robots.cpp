@@ -1,0 +1,266 @@
+#include "bridge/config_robots.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "bridge/config_values.hpp"
+#include "transports/image/dynamic_data_types.hpp"
+
+namespace meca::bridge {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::nanoseconds;
+
+constexpr std::size_t kMaxRobots = 256;
+constexpr int kCyclesPerLease = 3;  // fewer, and one late frame would take control away
+
+struct TypeInfo {
+  TransportType type;
+  std::string_view name;
+  bool available;  // this build can run it: THE place to switch a transport on
+  nanoseconds shortest_cycle, default_cycle;
+};
+// Shortest cycles: ethernet_ip the RPI minimum of the vendor's EDS 11.3; profinet and ethercat 1 ms as the manual says;
+// builtin what a soft-real-time thread can keep.
+constexpr std::array kTypes{
+    TypeInfo{TransportType::kBuiltin, "builtin", true, 500us, 1ms},
+    TypeInfo{TransportType::kEthernetIp, "ethernet_ip", false, 10ms, 10ms},
+    TypeInfo{TransportType::kEthercat, "ethercat", false, 1ms, 1ms},
+    TypeInfo{TransportType::kProfinet, "profinet", false, 1ms, 1ms},
+};
+constexpr nanoseconds kLongestCycle = 1s;
+
+constexpr const TypeInfo& info(TransportType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+// A robot with the places that checks between robots point at.
+struct Placed {
+  RobotConfig robot;
+  std::string path;  // "robots[0]"
+  yaml::Mark name, cycle, position;
+};
+
+bool is_speakable_firmware(std::string_view text) {
+  const auto version = parse_firmware(text);
+  return version && version->major >= 9 && version->major <= 11;
+}
+constexpr std::string_view kFirmwareExpected =
+    "9.x, 10.x or 11.x (other generations have another image), e.g. \"11.3\"";
+
+bool is_address(std::string_view text) { return config_values::is_ipv4(text) || config_values::is_host_name(text); }
+
+void read_builtin(const Section& transport, BuiltinConfig& out) {
+  static constexpr std::array<std::string_view, 2> kProducts{"R3", "R4"};
+  std::size_t product = 0;
+  if (transport.choice("product", kProducts, product)) out.product = kProducts[product];
+  transport.text("firmware", kFirmwareExpected, is_speakable_firmware, out.firmware);
+  transport.integer("serial_number", 0, 4294967295, out.serial_number);
+  transport.flag("instant_homing", out.instant_homing);
+  transport.flag("noise", out.noise);
+}
+
+void read_interface(const Section& transport, std::string& out) {
+  transport.require("interface", "interface: eth1");
+  transport.text("interface", "the name of a network interface as 'ip link' shows it, e.g. eth1",
+                 config_values::is_interface_name, out);
+}
+
+void read_ethernet_ip(const Section& transport, EthernetIpConfig& out) {
+  transport.require("address", "address: 192.168.0.100");
+  transport.text("address", "an IPv4 address or a host name, e.g. 192.168.0.100", is_address, out.address);
+  transport.integer("tcp_port", 1, 65535, out.tcp_port);
+}
+
+void read_ethercat(const Section& transport, EthercatConfig& out) {
+  read_interface(transport, out.interface);
+  transport.integer("position", 0, 65535, out.position);
+}
+
+void read_profinet(const Section& transport, ProfinetConfig& out) {
+  read_interface(transport, out.interface);
+  transport.require("station_name", "station_name: meca500-1");
+  transport.text("station_name", "a PROFINET station name: a-z 0-9 - in labels joined by dots, e.g. meca500-1",
+                 config_values::is_station_name, out.station_name);
+  static constexpr std::array<std::string_view, 2> kOrders{"big", "little"};
+  std::size_t order = 0;
+  if (transport.choice("byte_order", kOrders, order)) out.big_endian = order == 0;
+}
+
+// False when the type is missing or unknown: then nothing that depends on it can be checked.
+bool read_transport(const Section& robot, Placed& placed) {
+  robot.require("transport", "transport: {type: builtin}");
+  const yaml::Node* node = robot.find("transport");
+  if (node == nullptr) return false;
+  if (node->kind == yaml::Kind::kNull) {
+    robot.report().unexpected(*node, robot.path("transport"), "a map with at least the type, e.g. {type: builtin}");
+    return false;
+  }
+  if (node->kind != yaml::Kind::kMap) {
+    robot.child("transport", "robots[].transport");  // says so
+    return false;
+  }
+  std::array<std::string_view, kTypes.size()> names{};
+  std::transform(kTypes.begin(), kTypes.end(), names.begin(), [](const TypeInfo& type) { return type.name; });
+  const auto given =
+      std::find_if(node->keys.begin(), node->keys.end(), [](const auto& key) { return key.text == "type"; });
+  std::string_view type_name;
+  if (given != node->keys.end()) {
+    const yaml::Node& value = node->values[static_cast<std::size_t>(given - node->keys.begin())];
+    if (std::find(names.begin(), names.end(), value.text) != names.end()) type_name = value.text;
+  }
+  const Section transport = robot.child("transport", "robots[].transport", type_name);
+  transport.require("type", "type: builtin");
+  std::size_t index = 0;
+  if (!transport.choice("type", names, index)) return false;
+  RobotConfig& config = placed.robot;
+  config.type = kTypes[index].type;
+  placed.position = transport.mark("position");
+  switch (config.type) {
+    case TransportType::kBuiltin:
+      read_builtin(transport, config.builtin);
+      break;
+    case TransportType::kEthernetIp:
+      read_ethernet_ip(transport, config.ethernet_ip);
+      break;
+    case TransportType::kEthercat:
+      read_ethercat(transport, config.ethercat);
+      break;
+    case TransportType::kProfinet:
+      read_profinet(transport, config.profinet);
+      break;
+  }
+  if (!is_available(config.type)) {
+    std::string built;
+    for (const TypeInfo& type : kTypes) {
+      if (type.available) built += (built.empty() ? "'" : ", '") + std::string(type.name) + "'";
+    }
+    robot.report().error(transport.mark("type"), transport.path("type"),
+                         "'" + std::string(names[index]) + "' is not in this version yet, only " + built + " is");
+  }
+  return true;
+}
+
+void read_firmware(const Section& robot, transports::FirmwareVersion& out) {
+  const auto valid = [](std::string_view text) { return text == "auto" || is_speakable_firmware(text); };
+  std::string text;
+  const std::string expected = "auto, or " + std::string(kFirmwareExpected);
+  if (robot.text("firmware", expected, valid, text) && text != "auto") out = *parse_firmware(text);
+}
+
+void read_dynamic_data(const Section& robot, std::array<std::uint32_t, 4>& out) {
+  constexpr std::string_view kExpected = "a list of up to 4 dynamic data types, e.g. [auto, auto, auto, 40]";
+  const std::span<const yaml::Node> slots = robot.list("dynamic_data", out.size(), kExpected);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const yaml::Node& slot = slots[i];
+    const bool automatic = slot.kind == yaml::Kind::kScalar && slot.text == "auto";
+    const auto id = slot.kind == yaml::Kind::kScalar ? config_values::integer(slot.text) : std::nullopt;
+    const bool in_range = id && *id >= 0 && *id <= 19999;
+    const image::DynamicDataInfo* known =
+        in_range ? image::find_dynamic_data_type(static_cast<std::uint32_t>(*id)) : nullptr;
+    if (automatic || (in_range && *id == 0)) {
+      out[i] = image::kDynAutomatic;
+    } else if (known != nullptr && known->on_meca500) {
+      out[i] = static_cast<std::uint32_t>(*id);
+    } else {
+      robot.report().unexpected(slot, robot.path("dynamic_data") + "[" + std::to_string(i) + "]",
+                                "auto, a dynamic data type of the Meca500 (40 = actual joint angles), or a variable "
+                                "10000..19999");
+    }
+  }
+}
+
+void check_lease(const Section& robot, const Section& control, std::string_view key, nanoseconds lease,
+                 nanoseconds cycle) {
+  if (lease >= kCyclesPerLease * cycle) return;
+  const bool given = control.find(key) != nullptr;
+  control.report().error(given ? control.mark(key) : robot.mark("cycle"), control.path(key),
+                         to_string(lease) + (given ? "" : " (the default)") + " is less than " +
+                             std::to_string(kCyclesPerLease) + " cycles of " + to_string(cycle) + "; write " +
+                             to_string(kCyclesPerLease * cycle) + " or more");
+}
+
+void read_control(const Section& robot, const RobotConfig& config, bool check, ControlConfig& out) {
+  const Section control = robot.child("control", "robots[].control");
+  control.flag("enabled", out.enabled);
+  control.flag("allow_brakes", out.allow_brakes);
+  bool lease_right = control.duration("lease", 1ms, 60s, out.lease) || control.find("lease") == nullptr;
+  bool velocity_right =
+      control.duration("velocity_lease", 1ms, 60s, out.velocity_lease) || control.find("velocity_lease") == nullptr;
+  if (check && lease_right) check_lease(robot, control, "lease", out.lease, config.cycle);
+  if (check && velocity_right) check_lease(robot, control, "velocity_lease", out.velocity_lease, config.cycle);
+}
+
+Placed read_robot(const Section& robot, std::string path) {
+  Placed placed{{}, std::move(path), {}, {}, {}};
+  RobotConfig& config = placed.robot;
+  robot.require("name", "name: arm1");
+  robot.text("name", "1 to 63 of the characters A-Z a-z 0-9 _ -, e.g. arm1", config_values::is_robot_name, config.name);
+  placed.name = robot.mark("name");
+  placed.cycle = robot.mark("cycle");
+  const bool type_known = read_transport(robot, placed);
+  if (type_known) config.cycle = info(config.type).default_cycle;
+  const bool cycle_right = robot.duration("cycle", info(config.type).shortest_cycle, kLongestCycle, config.cycle) ||
+                           robot.find("cycle") == nullptr;
+  read_firmware(robot, config.firmware);
+  read_dynamic_data(robot, config.dynamic_data);
+  read_control(robot, config, cycle_right, config.control);
+  return placed;
+}
+
+void check_pair(const Placed& first, const Placed& second, Report& report) {
+  const RobotConfig &a = first.robot, &b = second.robot;
+  if (!a.name.empty() && a.name == b.name) {
+    report.error(second.name, second.path + ".name",
+                 "'" + b.name + "' is already the name of " + first.path + " in line " +
+                     std::to_string(first.name.line) + "; names must differ");
+  }
+  const bool same_segment = a.type == TransportType::kEthercat && b.type == TransportType::kEthercat &&
+                            !a.ethercat.interface.empty() && a.ethercat.interface == b.ethercat.interface;
+  if (!same_segment) return;
+  if (a.ethercat.position == b.ethercat.position) {
+    report.error(second.position, second.path + ".transport.position",
+                 std::to_string(b.ethercat.position) + " is already the position of " + first.path + " on '" +
+                     b.ethercat.interface + "'; positions on one segment must differ");
+  }
+  if (a.cycle != b.cycle) {
+    report.error(second.cycle, second.path + ".cycle",
+                 to_string(b.cycle) + " differs from the " + to_string(a.cycle) + " of " + first.path + " on '" +
+                     b.ethercat.interface + "'; one segment has one frame and one cycle");
+  }
+}
+
+}  // namespace
+
+std::vector<RobotConfig> read_robots(const Section& root) {
+  constexpr std::string_view kExpected =
+      "a list of 1 to 256 robots, the smallest: [{name: arm1, transport: {type: builtin}}]";
+  Report& report = root.report();
+  root.require("robots", "robots: [{name: arm1, transport: {type: builtin}}]");
+  const yaml::Node* node = root.find("robots");
+  if (node == nullptr) return {};
+  if (node->kind == yaml::Kind::kSequence && node->values.empty()) {
+    report.error(node->mark, "robots", "found an empty list; expected " + std::string(kExpected));
+  }
+  const std::span<const yaml::Node> elements = root.list("robots", kMaxRobots, kExpected);
+  std::vector<Placed> placed;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::string path = "robots[" + std::to_string(i) + "]";
+    if (elements[i].kind != yaml::Kind::kMap) {
+      report.unexpected(elements[i], path, "a robot, e.g. {name: arm1, transport: {type: builtin}}");
+      continue;
+    }
+    placed.push_back(read_robot(Section(&elements[i], elements[i].mark, path, "robots[]", report), path));
+  }
+  for (std::size_t b = 0; b < placed.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) check_pair(placed[a], placed[b], report);
+  }
+  std::vector<RobotConfig> robots;
+  for (Placed& each : placed) robots.push_back(std::move(each.robot));
+  return robots;
+}
+
+std::string_view to_string(TransportType type) { return info(type).name; }
+
+bool is_available(TransportType type) { return info(type).available; }
+
+}  // namespace meca::bridge
