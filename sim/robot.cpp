@@ -1,1 +1,33 @@
 #include "sim/robot.hpp"
+
+#include "sim/robot_state.hpp"
+
+namespace meca::sim {
+
+Robot::Robot(const RobotOptions& options) : state_(std::make_unique<State>(options)) {}
+Robot::~Robot() = default;
+Robot::Robot(Robot&&) noexcept = default;
+Robot& Robot::operator=(Robot&&) noexcept = default;
+
+void Robot::step(const image::Outputs& outputs, Time dt) noexcept {
+  state_->take(outputs);
+  state_->advance(dt);
+}
+void Robot::step_without_outputs(Time dt) noexcept { state_->advance(dt); }
+
+const image::Inputs& Robot::inputs() const noexcept { return state_->inputs; }
+
+void Robot::press_e_stop() noexcept { state_->press_e_stop(); }
+void Robot::release_e_stop() noexcept { state_->safety.release_e_stop(); }
+void Robot::press_reset_button() noexcept { state_->safety.press_reset_button(); }
+void Robot::press_p_stop2() noexcept { state_->safety.press_p_stop2(); }
+void Robot::release_p_stop2() noexcept { state_->safety.release_p_stop2(); }
+void Robot::drop_connection() noexcept { state_->safety.drop_connection(); }
+void Robot::restore_connection() noexcept { state_->safety.restore_connection(); }
+void Robot::raise_error(std::uint16_t code) noexcept { state_->fail(code); }
+void Robot::set_monitoring(bool monitoring) noexcept { state_->monitoring = monitoring; }
+
+const Journal& Robot::journal() const noexcept { return state_->journal; }
+const Log<Violation>& Robot::violations() const noexcept { return state_->violations; }
+
+}  // namespace meca::sim

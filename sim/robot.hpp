@@ -6,13 +6,16 @@
 #include <cstdint>
 #include <memory>
 
+#include "sim/journal.hpp"
 #include "transports/image/image.hpp"
 
 namespace meca::sim {
 
-using Time = std::chrono::nanoseconds;
-
 enum class Product : std::uint8_t { kMeca500R3 = 3, kMeca500R4 = 4 };
+enum class StopSeverity : std::uint8_t {
+  kPause = 2,
+  kClear = 3
+};  // SetPStop2Cfg (not reachable over cyclic protocols)
 
 struct RobotOptions {
   Product product = Product::kMeca500R4;
@@ -23,8 +26,10 @@ struct RobotOptions {
   Time activation_time = std::chrono::seconds(2);
   Time homing_time = std::chrono::seconds(4);
   Time deactivation_time = std::chrono::milliseconds(500);
-  bool noise = true;               // plausible noise on actual values (seeded)
+  bool noise = true;  // plausible noise on actual values (seeded)
   std::uint64_t seed = 1;
+  StopSeverity p_stop2_severity = StopSeverity::kClear;  // inferred: the default of the vendor's Python call
+  std::size_t journal_capacity = 4096;                   // commands the journal remembers
 };
 
 class Robot {
@@ -44,9 +49,17 @@ class Robot {
   // What tests and users may do to a robot.
   void press_e_stop() noexcept;
   void release_e_stop() noexcept;
+  void press_reset_button() noexcept;  // of the power supply (R4): resets an E-Stop that has been released
   void press_p_stop2() noexcept;
   void release_p_stop2() noexcept;
+  void drop_connection() noexcept;  // the "connection dropped" safety stop
+  void restore_connection() noexcept;
   void raise_error(std::uint16_t code) noexcept;
+  void set_monitoring(bool monitoring) noexcept;  // this connection may only watch: outputs are ignored
+
+  // The referees: every command and what became of it, and every rule the host broke.
+  const Journal& journal() const noexcept;
+  const Log<Violation>& violations() const noexcept;
 
  private:
   struct State;

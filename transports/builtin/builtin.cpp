@@ -1,1 +1,65 @@
 #include "transports/builtin/builtin.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "transports/image/codec.hpp"
+
+namespace meca::transports {
+namespace {
+
+// A bus that has been silent for longer (a debugger, a stopped process) lets the robots live this much of it.
+constexpr Time kLongestStep = std::chrono::milliseconds(100);
+constexpr Time kShortestStep = std::chrono::microseconds(1);
+
+class Builtin final : public Transport {
+ public:
+  explicit Builtin(const std::vector<sim::RobotOptions>& options) {
+    robots_.reserve(options.size());
+    for (const sim::RobotOptions& o : options) {
+      robots_.push_back({sim::Robot(o), {o.layout, std::endian::little}});
+    }
+  }
+
+  std::endian byte_order() const noexcept override { return std::endian::little; }
+  void open(Time now) override { last_ = now; }
+
+  void exchange(Time now, std::span<Exchange> exchanges) noexcept override {
+    const Time dt = last_ ? std::clamp(now - *last_, kShortestStep, kLongestStep) : kShortestStep;
+    last_ = now;
+    for (std::size_t i = 0; i < std::min(exchanges.size(), robots_.size()); ++i) {
+      auto& [robot, format] = robots_[i];
+      Exchange& e = exchanges[i];
+      if (e.output_valid) {
+        robot.step(image::decode_outputs(e.output, format), dt);
+      } else {
+        robot.step_without_outputs(dt);
+      }
+      image::encode_inputs(robot.inputs(), format, e.input);
+      e.fresh = true;
+      e.link = LinkState::kUp;
+      e.link_detail = {};
+      // There is no identity object on this bus: the firmware is to be read from dynamic data type 1.
+      e.identity = {};
+    }
+  }
+
+  void close() noexcept override { last_.reset(); }
+
+ private:
+  struct Member {
+    sim::Robot robot;
+    image::Format format;
+  };
+  std::vector<Member> robots_;
+  std::optional<Time> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Transport> make_builtin(std::vector<sim::RobotOptions> robots) {
+  return std::make_unique<Builtin>(robots);
+}
+
+}  // namespace meca::transports

@@ -1,0 +1,198 @@
+#include "sim/dynamic_values.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace meca::sim {
+namespace {
+
+using Values = std::array<float, 6>;
+
+Values floats(const std::array<double, 6>& v) noexcept {
+  Values out;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = static_cast<float>(v[i]);
+  return out;
+}
+
+float f(double v) noexcept { return static_cast<float>(v); }
+
+// Uniform in -1..1, a hash of seed, cycle and channel: no state, so every slot of a cycle sees the same arm.
+double noise(const DynamicSource& s, std::uint64_t channel) noexcept {
+  if (!s.options.noise) return 0;
+  std::uint64_t x = s.options.seed * 0x9E3779B97F4A7C15u + s.cycle * 64 + channel;  // splitmix64
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  x ^= x >> 31;
+  return static_cast<double>(x >> 11) * 0x1.0p-52 - 1.0;
+}
+
+// A real robot at rest moves by about 0.001 degrees (published 1 kHz log).
+Joints actual_joints(const DynamicSource& s) noexcept {
+  Joints out = s.joints;
+  for (std::size_t i = 0; i < 6; ++i) out[i] += 0.001 * noise(s, i);
+  return out;
+}
+
+Joints actual_velocity(const DynamicSource& s) noexcept {
+  Joints out = s.joint_velocity;
+  for (std::size_t i = 0; i < 6; ++i) out[i] += 0.05 * noise(s, 8 + i);  // inferred size
+  return out;
+}
+
+// In percent of what each motor can do. Not published: a plausible share of gravity on joints 2, 3 and 5, no more.
+Joints torque(const DynamicSource& s) noexcept {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const double q2 = s.joints[1] * kDegree, q23 = (s.joints[1] + s.joints[2]) * kDegree;
+  const double load = 1 + 2 * s.settings.payload[0];  // 0.5 kg doubles it
+  const double forearm = std::cos(q23) * load;
+  return {0, 12 * std::sin(q2) + 10 * forearm, 10 * forearm, 0, 3 * std::cos(q23 + s.joints[4] * kDegree) * load, 0};
+}
+
+Twist cartesian_velocity(const DynamicSource& s, const Joints& velocity) noexcept {
+  const Twist base = multiply(jacobian(s.joints, s.settings.trf_transform.p), velocity);
+  const Mat3 to_wrf = transpose(s.settings.wrf_transform.r);
+  const Vec3 v = to_wrf * Vec3{base[0], base[1], base[2]}, w = to_wrf * Vec3{base[3], base[4], base[5]};
+  return {v[0], v[1], v[2], w[0], w[1], w[2]};
+}
+
+Values actual_pose(const DynamicSource& s) noexcept {
+  return floats(to_pose(inverse(s.settings.wrf_transform) * forward(actual_joints(s)) * s.settings.trf_transform));
+}
+
+Values actual_configuration(const DynamicSource& s) noexcept {
+  const Joints q = actual_joints(s);
+  const Posture p = posture(q);
+  return {f(p.shoulder), f(p.elbow), f(p.wrist), f(turn(q[5]))};
+}
+
+// Gravity as link 5 feels it, in 1/16000 g; upright and at rest 0, 0, -16000.
+Values accelerometer(const DynamicSource& s) noexcept {
+  const Joints& q = s.joints;
+  const Mat3 link5 = rotation({0, 0, 1}, q[0]) * rotation({0, 1, 0}, q[1] + q[2]) * rotation({1, 0, 0}, q[3]) *
+                     rotation({0, 1, 0}, q[4]);
+  const Vec3 g = transpose(link5) * Vec3{0, 0, -16000};
+  return {f(g[0] + 20 * noise(s, 16)), f(g[1] + 20 * noise(s, 17)), f(g[2] + 20 * noise(s, 18))};
+}
+
+Values limits(const JointLimits& l, std::size_t first) noexcept {
+  return {f(l.minimum[first]), f(l.minimum[first + 1]), f(l.minimum[first + 2]),
+          f(l.maximum[first]), f(l.maximum[first + 1]), f(l.maximum[first + 2])};
+}
+
+// Firmware 9 gives minimum and maximum of each joint in turn for types 14 and 15.
+Values effective_limits(const DynamicSource& s, std::size_t first) noexcept {
+  const Values v = limits(s.limits.effective(), first);
+  if (s.options.layout != image::Layout::kFirmware9) return v;
+  return {v[0], v[3], v[1], v[4], v[2], v[5]};
+}
+
+Values firmware(const RobotOptions& o) noexcept {
+  const int major = o.layout == image::Layout::kFirmware9 ? 9 : o.layout == image::Layout::kFirmware10 ? 10 : 11;
+  return {f(major), f(o.firmware_minor), f(o.firmware_patch), f(o.firmware_build)};
+}
+
+Values wanted_configuration(const Settings& s) noexcept {
+  constexpr float kAutomatic = std::numeric_limits<float>::quiet_NaN();
+  const float turn = s.auto_conf_turn ? kAutomatic : f(s.conf_turn);
+  if (s.auto_conf) return {kAutomatic, kAutomatic, kAutomatic, turn};
+  return {f(s.conf.shoulder), f(s.conf.elbow), f(s.conf.wrist), turn};
+}
+
+Values speeds(const DynamicSource& source) noexcept {
+  const Settings& s = source.settings;
+  Values v = floats({s.joint_velocity, s.joint_acceleration, s.linear_velocity, s.angular_velocity,
+                     s.cartesian_acceleration, s.joint_velocity_limit});
+  if (source.options.layout == image::Layout::kFirmware9) v[5] = 0;  // five values in manual 9.2
+  return v;
+}
+
+// Settings of the queue and the robot, types 1..31, 36, 54, 61 and 62.
+Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
+  const Settings& s = source.settings;
+  const UserLimits& l = source.limits;
+  switch (type) {
+    case 1:
+      return firmware(source.options);
+    case 2:
+      return {f(static_cast<int>(source.options.product))};
+    case 3:
+      return {f(source.options.serial_number), std::bit_cast<float>(source.options.serial_number)};
+    case 11:
+      return {l.enabled() ? 1.0f : 0.0f};
+    case 12:
+      return limits(kModelLimits, 0);
+    case 13:
+      return limits(kModelLimits, 3);
+    case 14:
+      return effective_limits(source, 0);
+    case 15:
+      return effective_limits(source, 3);
+    case 17:
+      return {0, 1};  // work zone: silent, flange centre (the default is not published)
+    case 18:
+      return {-10000, -10000, -10000, 10000, 10000, 10000};
+    case 20:
+      return wanted_configuration(s);
+    case 21:
+      return {f(s.blending), f(s.velocity_timeout)};
+    case 22:
+      return speeds(source);
+    case 23:
+      return {f(s.gripper_force), f(s.gripper_velocity)};
+    case 24:
+      return {f(s.torque_severity), f(s.torque_mode)};
+    case 25:
+      return floats(s.torque_limits);
+    case 29:
+      return {f(s.move_mode), f(s.move_duration_severity), f(s.move_duration)};
+    case 30:
+      return {1, 1};  // calibrated at the factory
+    case 31:
+      return {f(s.payload[0]), f(s.payload[1]), f(s.payload[2]), f(s.payload[3])};
+    case 54:
+      return {f(s.time_scaling)};
+    case 61:
+      return limits(l.configured(), 0);
+    case 62:
+      return limits(l.configured(), 3);
+    default:
+      return {};  // types from the wire, not an enumeration
+  }
+}
+
+}  // namespace
+
+std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) noexcept {
+  switch (type) {
+    case 32:
+      return floats(s.joint_velocity);
+    case 33:
+      return floats(torque(s));
+    case 34:
+      return floats(cartesian_velocity(s, s.joint_velocity));
+    case 40:
+      return floats(actual_joints(s));
+    case 41:
+      return actual_pose(s);
+    case 42:
+      return floats(actual_velocity(s));
+    case 43: {
+      Joints t = torque(s);
+      for (std::size_t i = 0; i < 6; ++i) t[i] += 0.5 * noise(s, 24 + i);
+      return floats(t);
+    }
+    case 44:
+      return floats(cartesian_velocity(s, actual_velocity(s)));
+    case 45:
+      return actual_configuration(s);
+    case 46:
+      return accelerometer(s);
+    default:
+      return configured(type, s);
+  }
+}
+
+}  // namespace meca::sim

@@ -1,0 +1,27 @@
+// The six values of each dynamic data type (manual table 12), computed only when a slot shows the type.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sim/robot.hpp"
+#include "sim/settings.hpp"
+#include "sim/user_limits.hpp"
+
+namespace meca::sim {
+
+// What the values are made of; refers to the robot's own state for the time of one call.
+struct DynamicSource {
+  const RobotOptions& options;
+  const Settings& settings;
+  const UserLimits& limits;
+  const Joints& joints;          // target, deg
+  const Joints& joint_velocity;  // target, deg/s
+  std::uint64_t cycle;           // the noise of one cycle is the same in all slots
+};
+
+// Types that no Meca500 has, or that no document names, give zeros (inferred: the manual only says what the known ones
+// hold). Variables (10000..19999) do not exist in the model yet: zeros.
+std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& source) noexcept;
+
+}  // namespace meca::sim

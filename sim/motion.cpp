@@ -1,0 +1,206 @@
+#include "sim/motion.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "sim/error.hpp"
+#include "transports/image/motion_commands.hpp"
+
+namespace meca::sim {
+namespace {
+
+constexpr int kCommandsPerStep =
+    64;  // how many a step may take from the queue; not published, bounds the time of a step
+
+bool is_velocity(std::uint32_t id) noexcept {
+  return id == image::kMoveJointsVel || id == image::kMoveLinVelWrf || id == image::kMoveLinVelTrf;
+}
+
+bool is_joint_move(std::uint32_t id) noexcept {
+  return id == image::kMoveJoints || id == image::kMovePose || id == image::kMoveJointsRel;
+}
+
+bool is_linear_move(std::uint32_t id) noexcept {
+  return id == image::kMoveLin || id == image::kMoveLinRelTrf || id == image::kMoveLinRelWrf;
+}
+
+}  // namespace
+
+void Motion::repeat_velocity(Time now, const Command& command) noexcept {
+  if (active_count_ == 0 && queue_.empty()) {
+    if (!velocity_.active()) journal_.add({now, command, Outcome::kExecuted, 0});
+    velocity_.command(command);
+  } else if (!queue_.empty() && queue_.back().move_id == 0 && is_velocity(queue_.back().id)) {
+    queue_.back() = command;
+  } else {
+    queue_.push(command);
+  }
+}
+
+void Motion::discard(Time now, const Command& command) noexcept {
+  if (command.id == image::kSetCheckpoint) checkpoint_discarded_ = static_cast<std::uint16_t>(command.arguments[0]);
+  journal_.add({now, command, Outcome::kDiscarded, 0});
+}
+
+void Motion::discard_active(Time now) noexcept {
+  if (clearing_) return;  // in the journal already
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    if (i > 0 || !done_logged_) discard(now, active_[i].command);
+  }
+}
+
+void Motion::clear(Time now) noexcept {
+  discard_active(now);
+  clearing_ = active_count_ > 0;
+  while (!queue_.empty()) {
+    discard(now, queue_.front());
+    queue_.pop();
+  }
+}
+
+void Motion::halt(Time now) noexcept {
+  clear(now);
+  active_count_ = 0;
+  clearing_ = done_logged_ = false;
+  velocity_.halt();
+  going_ = 1;
+}
+
+bool Motion::moving() const noexcept {
+  if (velocity_.moving()) return true;
+  if (active_count_ == 0 || going_ <= 0) return false;
+  return active_count_ > 1 || active_[0].segment.kind() != Segment::Kind::kDelay;
+}
+
+// How much path time passes in `seconds`: stops and goes on along the path with a smooth change of pace. A pause takes
+// effect at once (published: within 5 ms) and needs the ramp of the move under way to come to rest.
+double Motion::pace(double seconds) noexcept {
+  if (active_count_ == 0 || active_[0].segment.kind() == Segment::Kind::kDelay) {
+    going_ = held_ ? 0 : 1;
+    return held_ ? 0 : seconds;
+  }
+  const double ramp = std::max(active_[0].segment.ramp(), 0.01);
+  const double before = going_;
+  going_ = std::clamp(going_ + (held_ ? -seconds : seconds) / ramp, 0.0, 1.0);
+  const auto smooth = [](double x) { return x * x * (3 - 2 * x); };
+  return seconds * (smooth(before) + smooth(going_)) / 2;
+}
+
+// Path time of the older segment from which a successor may run at the same time: at blending 100 %, its whole ramp.
+double Motion::blend_start() const noexcept {
+  const Segment& s = active_[0].segment;
+  return s.duration() - settings_.blending / 100 * s.ramp();
+}
+
+// Joint moves blend with joint moves and linear with linear; what stands between them may set things, not stop the arm.
+bool Motion::can_blend() const noexcept {
+  const std::uint32_t now = active_[0].command.id;
+  if (held_ || clearing_ || active_count_ != 1 || settings_.blending <= 0 ||
+      active_[0].elapsed < blend_start() - 1e-12) {
+    return false;
+  }
+  constexpr std::size_t kLookAhead = 16;
+  for (std::size_t i = 0; i < std::min(queue_.size(), kLookAhead); ++i) {
+    const std::uint32_t next = queue_.at(i).id;
+    if (is_joint_move(next)) return is_joint_move(now);
+    if (is_linear_move(next)) return is_linear_move(now);
+    if (needs_full_stop(next) || next == image::kDelay || is_velocity(next)) return false;
+  }
+  return false;
+}
+
+// Seconds of path time until the older segment ends, or until a successor may begin.
+double Motion::until_event() const noexcept {
+  const Active& a = active_[0];
+  const double blend = blend_start() - a.elapsed;
+  return active_count_ == 1 && blend > 1e-12 ? blend : a.segment.duration() - a.elapsed;
+}
+
+void Motion::elapse(Time now, double seconds) noexcept {
+  for (std::size_t i = 0; i < active_count_; ++i) active_[i].elapsed += seconds;
+  joints_ = active_[0].segment.at(active_[0].elapsed);
+  if (active_count_ > 1) {
+    const Joints from = active_[1].segment.start();
+    const Joints q = active_[1].segment.at(active_[1].elapsed);
+    for (std::size_t i = 0; i < 6; ++i) joints_[i] += q[i] - from[i];
+  }
+  if (active_[0].elapsed < active_[0].segment.duration() - 1e-12) return;
+  if (!done_logged_ && !clearing_) journal_.add({now, active_[0].command, Outcome::kExecuted, 0});
+  done_logged_ = false;
+  if (--active_count_ > 0) active_[0] = active_[1];
+  if (active_count_ == 0) clearing_ = false;
+}
+
+std::uint16_t Motion::start_move(Time now, const Command& command, const Joints& from, const JointLimits& limits,
+                                 bool recovery_mode) noexcept {
+  Active& slot = active_[active_count_];
+  const Situation situation{from, limits, recovery_mode};
+  const std::uint16_t code = Planner(settings_, situation).plan(command, slot.segment);
+  if (code != error::kNone) {
+    journal_.add({now, command, Outcome::kRefused, code});
+    return code;
+  }
+  slot.command = command;
+  slot.elapsed = 0;
+  if (active_count_++ == 0) done_logged_ = false;
+  return error::kNone;
+}
+
+// Takes the next command from the queue. With a move under way, that move counts as done: they blend.
+std::uint16_t Motion::start_next(Time now, const JointLimits& limits, bool recovery_mode) noexcept {
+  const Command command = queue_.front();
+  queue_.pop();
+  if (active_count_ > 0 && !done_logged_) {
+    journal_.add({now, active_[0].command, Outcome::kExecuted, 0});
+    done_logged_ = true;
+  }
+  const Joints from = active_count_ > 0 ? active_[0].segment.end() : joints_;
+  if (is_velocity(command.id)) {
+    velocity_.command(command);
+  } else if (command.id == image::kSetCheckpoint) {
+    checkpoint_reached_ = static_cast<std::uint16_t>(command.arguments[0]);
+  } else if (apply(command, from, settings_)) {
+    ++settings_version_;
+  } else {
+    return start_move(now, command, from, limits, recovery_mode);
+  }
+  journal_.add({now, command, Outcome::kExecuted, 0});
+  return error::kNone;
+}
+
+void Motion::run_velocity(Time now, double seconds, const JointLimits& limits, bool recovery_mode) noexcept {
+  if (!held_ && !queue_.empty() && is_velocity(queue_.front().id)) {
+    start_next(now, limits, recovery_mode);  // goes on with the new velocity without stopping
+  } else if (held_ || !queue_.empty()) {
+    velocity_.cancel();
+  }
+  velocity_.step(seconds, settings_, limits, recovery_mode, joints_);
+}
+
+std::uint16_t Motion::advance(Time now, Time dt, const JointLimits& limits, bool recovery_mode) noexcept {
+  double left = std::chrono::duration<double>(dt).count() * settings_.time_scaling / 100;
+  if (velocity_.active()) {
+    run_velocity(now, left, limits, recovery_mode);
+    return error::kNone;
+  }
+  left = pace(left);
+  if (clearing_ && going_ <= 0) {
+    active_count_ = 0;
+    clearing_ = done_logged_ = false;
+  }
+  for (int budget = kCommandsPerStep; budget > 0 && !velocity_.active();) {
+    const bool may_start = active_count_ == 0 ? !held_ && !queue_.empty() : can_blend();
+    if (may_start) {
+      --budget;
+      if (const auto code = start_next(now, limits, recovery_mode); code != error::kNone) return code;
+      continue;
+    }
+    if (active_count_ == 0 || left <= 0) break;
+    const double step = std::min(left, until_event());
+    left -= step;
+    elapse(now, step);
+  }
+  return error::kNone;
+}
+
+}  // namespace meca::sim

@@ -1,0 +1,85 @@
+#include "sim/reception.hpp"
+
+#include "sim/error.hpp"
+
+namespace meca::sim {
+namespace {
+
+bool arguments_are_good(const Command& c, const image::MotionCommandInfo& info, Product product) noexcept {
+  for (std::size_t i = 0; i < info.minimum_arguments; ++i) {
+    image::Argument rule = info.arguments[i];
+    if (c.id == image::kMoveJoints) rule.minimum = -(rule.maximum = 1e30);  // a joint limit is error 1007, not 1003
+    const bool percent_of_r3 = c.id == image::kSetJointVel || c.id == image::kSetJointVelLimit;
+    if (percent_of_r3 && product == Product::kMeca500R3) rule.maximum = 100;
+    if (!image::allows(rule, c.arguments[i])) return false;
+  }
+  return true;
+}
+
+// Equipment and features that this robot does not have.
+std::uint16_t missing(std::uint32_t id) noexcept {
+  switch (id) {
+    case image::kGripper:
+    case image::kSetGripperVel:
+    case image::kSetGripperForce:
+    case image::kSetGripperRange:
+    case image::kMoveGripper:
+      return error::kNoGripper;
+    case image::kSetValveState:
+      return error::kNoPneumaticModule;
+    case image::kStartProgram:
+      return error::kProgramNotFound;
+    case image::kSetTorqueLimits:
+    case image::kSetTorqueLimitsCfg:
+    case image::kSetMoveMode:
+    case image::kSetMoveDurationCfg:
+    case image::kSetMoveDuration:
+    case image::kSetWorkZoneCfg:
+    case image::kSetWorkZoneLimits:
+    case image::kSetCollisionCfg:
+    case image::kSetToolSphere:
+    case image::kSetCalibrationCfg:
+    case image::kRebootRobot:
+      return error::kCommandFailed;
+    default:
+      break;  // an id from the wire, not an enumeration
+  }
+  return id >= image::kFirstVariable && id <= image::kLastVariable ? error::kSetVariable : error::kNone;
+}
+
+}  // namespace
+
+Verdict examine(const Command& command, bool use_variables, const Readiness& r) noexcept {
+  const image::MotionCommandInfo* info = image::find_motion_command(command.id);
+  // Not published what a robot answers to commands of other robots; inferred: it does not know them.
+  if (info == nullptr || info->since > r.layout || info->command_class == image::CommandClass::kOtherRobots) {
+    return {error::kUnknownCommand};
+  }
+  if (use_variables && r.layout == image::Layout::kFirmware11 && info->minimum_arguments > 0) {
+    return {error::kGetVariable};  // no variable exists in the model yet
+  }
+  if (!arguments_are_good(command, *info, r.product)) return {error::kArguments};
+  if (const auto code = missing(command.id); code != error::kNone) return {code};
+
+  using enum image::CommandClass;
+  switch (info->command_class) {
+    case kImmediate:
+    case kOtherRobots:
+      break;
+    case kConfiguration:
+      if (!r.off) return {error::kMustBeDeactivated};
+      break;
+    case kQueued:
+      if (!r.ready) return {error::kNotActivated};
+      break;
+    case kMotion:
+    case kVelocity:
+      if (!r.ready) return {error::kNotActivated};
+      // Recovery mode moves slowly without homing (spec 5.6).
+      if (!r.homed && !r.recovery_mode) return {error::kNotHomed};
+      break;
+  }
+  return {error::kNone, info};
+}
+
+}  // namespace meca::sim

@@ -1,0 +1,26 @@
+// Decides whether the robot takes a command the moment it arrives, and with which error code it does not.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/journal.hpp"
+#include "sim/robot.hpp"
+#include "transports/image/motion_commands.hpp"
+
+namespace meca::sim {
+
+struct Readiness {
+  Product product;
+  image::Layout layout;
+  bool off, ready, homed, recovery_mode;
+};
+
+struct Verdict {
+  std::uint16_t code = 0;                          // 0: take it
+  const image::MotionCommandInfo* info = nullptr;  // of a command that is taken
+};
+
+// What the model does not do yet is refused too, with the code a robot without that equipment gives; see sim/README.md.
+Verdict examine(const Command& command, bool use_variables, const Readiness& readiness) noexcept;
+
+}  // namespace meca::sim

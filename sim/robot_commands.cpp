@@ -1,0 +1,189 @@
+// What the host says: control bits, the MoveID handshake and commands.
+#include "sim/error.hpp"
+#include "sim/robot_state.hpp"
+#include "transports/image/error_codes.hpp"
+
+namespace meca::sim {
+
+void Robot::State::fail(std::uint16_t code) noexcept {
+  if (error != error::kNone) return;  // the first cause stays
+  error = code;
+  paused = true;  // ResetError leaves the robot paused (manual, ResetError)
+  cleared = true;
+  motion.clear(now);
+}
+
+void Robot::State::press_e_stop() noexcept {
+  safety.press_e_stop();
+  power.cut();
+  motion.halt(now);
+  cleared = true;
+  // inferred: an R3 loses all power with its E-Stop, and with it the homing.
+  if (options.product == Product::kMeca500R3) power.forget_homing();
+}
+
+void Robot::State::take(const image::Outputs& next) noexcept {
+  if (monitoring) return;
+  check_levels(next);
+  if (next.host_time.seconds != 0) host_seconds = next.host_time.seconds;
+  take_robot_control(next.robot_control);
+  if (power.off()) {
+    const image::BrakesControl& b = next.brakes_control;
+    brakes_released_by_hand = b.brakes_control_allowed && !b.brakes_engaged;
+  }
+  take_motion_control(next.motion_control);
+  take_command(next);
+  outputs = next;
+}
+
+void Robot::State::take_robot_control(const image::RobotControl& c) noexcept {
+  if (c.reset_error && error != error::kNone) {
+    const image::ErrorInfo* info = image::find_error_code(error);
+    if (info == nullptr || info->resettable) error = error::kNone;
+  }
+  if (c.deactivate) {
+    if (!power.off() && power.state() != Power::State::kDeactivating) {
+      power.deactivate();
+      motion.halt(now);
+      cleared = true;
+    }
+  } else if (c.activate && power.off() && safety.motors_allowed() && error == error::kNone) {
+    power.activate();
+    brakes_released_by_hand = false;
+  }
+  if (c.home && power.ready() && !power.homed() && error == error::kNone) power.home();
+  if (power.off() && !safety.stops_motion()) sim_mode = c.sim_mode;
+  recovery_mode = c.recovery_mode;
+}
+
+void Robot::State::take_motion_control(const image::MotionControl& c) noexcept {
+  if (c.pause_motion && power.ready()) paused = true;
+  if (c.clear_motion && power.ready()) {
+    paused = true;
+    cleared = true;
+    motion.clear(now);
+  }
+  if (safety.stops_motion()) {
+    paused = true;
+    if (safety.clears_motion()) {
+      cleared = true;
+      motion.clear(now);
+    }
+  }
+  if (c.pause_motion || c.clear_motion) return;
+  if (options.layout == image::Layout::kFirmware9) {
+    // Firmware 9 has ResetPStop2 in place of ResumeMotion, and goes on by itself when both bits are 0.
+    if (c.resume_motion) safety.reset_resettable();
+    resume_if_possible();
+  } else if (c.resume_motion && !outputs.motion_control.resume_motion && !safety.present()) {
+    safety.reset_resettable();
+    resume_if_possible();
+  }
+}
+
+void Robot::State::resume_if_possible() noexcept {
+  if (!paused || safety.stops_motion() || error != error::kNone || !power.ready()) return;
+  paused = false;
+  cleared = false;
+}
+
+bool Robot::State::takes_no_commands() const noexcept {
+  return outputs.motion_control.clear_motion || safety.clears_motion() || motion.clearing();
+}
+
+void Robot::State::take_command(const image::Outputs& o) noexcept {
+  const image::MotionControl& c = o.motion_control;
+  if (!c.set_point) return;
+  const bool cyclic = c.move_id == 0;
+  const bool changed = c.move_id != move_id;
+  move_id = c.move_id;
+  if (!cyclic && !changed) return;
+  if (cyclic && o.motion_command.command_id == 0) return;
+  outputs.motion_control = c;  // what follows asks whether ClearMotion is set now
+  receive({o.motion_command.command_id, c.move_id, o.motion_command.arguments}, c.use_variables, cyclic);
+}
+
+void Robot::State::refuse(const Command& command, std::uint16_t code, bool cyclic) noexcept {
+  if (cyclic && command == refused_in_cyclic_mode) return;
+  if (cyclic) refused_in_cyclic_mode = command;
+  journal.add({now, command, Outcome::kRefused, code});
+}
+
+void Robot::State::receive(const Command& command, bool use_variables, bool cyclic) noexcept {
+  // The error shown stays the first one (inferred); the journal has the 1011.
+  if (error != error::kNone) return refuse(command, error::kAlreadyInError, cyclic);
+  const Verdict verdict =
+      examine(command, use_variables,
+              {options.product, options.layout, power.off(), power.ready(), power.homed(), recovery_mode});
+  if (verdict.code != error::kNone) {
+    refuse(command, verdict.code, cyclic);
+    return fail(verdict.code);
+  }
+  using enum image::CommandClass;
+  const image::CommandClass kind = verdict.info->command_class;
+  if (kind == kImmediate) return execute_now(command);
+  if (kind == kConfiguration) return configure(command);
+  if (takes_no_commands()) return refuse(command, error::kNotAllowedNow, cyclic);
+  if (cyclic && kind == kVelocity) {
+    if (paused) return;  // a stream that a pause has stopped is no queue
+    cleared = false;
+    return motion.repeat_velocity(now, command);
+  }
+  if (!motion.enqueue(command)) {
+    violation("a command was sent while FIFOSpace was 0; it is lost");
+    return refuse(command, error::kBufferFull, cyclic);
+  }
+  cleared = false;
+}
+
+void Robot::State::execute_now(const Command& command) noexcept {
+  if (command.id == image::kSetTimeScaling) {
+    apply(command, motion.joints(), motion.settings());
+    slots.changed(54);
+  } else if (command.id == image::kClearHoming) {
+    power.forget_homing();
+  }
+  journal.add({now, command, Outcome::kExecuted, 0});
+}
+
+void Robot::State::configure(const Command& command) noexcept {
+  const auto& a = command.arguments;
+  bool good = false;
+  if (command.id == image::kSetJointLimitsCfg) {
+    limits.enable(a[0] != 0);
+    slots.changed(11);
+    good = true;
+  } else if (command.id == image::kSetJointLimits) {
+    good = limits.set(static_cast<int>(a[0]), a[1], a[2]);
+    for (const std::uint32_t type : {61u, 62u}) slots.changed(type);
+  }
+  for (const std::uint32_t type : {14u, 15u}) slots.changed(type);
+  if (good) {
+    journal.add({now, command, Outcome::kExecuted, 0});
+  } else {
+    refuse(command, error::kArguments, false);
+    fail(error::kArguments);
+  }
+}
+
+// A host that does not wait for the confirmation works by luck on a real robot.
+void Robot::State::check_levels(const image::Outputs& next) noexcept {
+  const auto fell = [](bool before, bool after) { return before && !after; };
+  const image::RobotControl &was = outputs.robot_control, &is = next.robot_control;
+  using Power = sim::Power::State;
+  if (fell(was.activate, is.activate) && power.state() == Power::kActivating) {
+    violation("Activate was dropped before Activated confirmed it");
+  }
+  if (fell(was.home, is.home) && power.state() == Power::kHoming) {
+    violation("Home was dropped before Homed confirmed it");
+  }
+  if (fell(was.deactivate, is.deactivate) && power.state() == Power::kDeactivating) {
+    violation("Deactivate was dropped before Activated confirmed it");
+  }
+  const bool clear_fell = fell(outputs.motion_control.clear_motion, next.motion_control.clear_motion);
+  if (clear_fell && power.ready() && !inputs.motion_status.cleared) {
+    violation("ClearMotion was dropped before Cleared confirmed it");
+  }
+}
+
+}  // namespace meca::sim

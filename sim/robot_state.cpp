@@ -1,0 +1,123 @@
+// Time, and what the robot says: the input image.
+#include "sim/robot_state.hpp"
+
+#include <algorithm>
+
+#include "sim/error.hpp"
+
+namespace meca::sim {
+namespace {
+
+Settings defaults(const RobotOptions& options) noexcept {
+  Settings out;
+  if (options.product == Product::kMeca500R4) out.joint_velocity_limit = 150;
+  return out;
+}
+
+// inferred: any start will do, the reference is arbitrary (manual 4.5.8).
+constexpr Time kBoot = std::chrono::seconds(100);
+
+}  // namespace
+
+Robot::State::State(const RobotOptions& o)
+    : options(o),
+      journal(o.journal_capacity),
+      motion(defaults(o), journal),
+      power({o.activation_time, o.homing_time, o.deactivation_time}),
+      safety(o.product, o.p_stop2_severity),
+      slots(o.layout) {
+  report();
+}
+
+void Robot::State::advance(Time dt) noexcept {
+  dt = std::max(dt, Time(1));
+  now += dt;
+  ++cycle;
+  if (power.advance(dt)) {
+    motion.restore_defaults();
+    for (const std::uint32_t type : {20u, 21u, 22u, 25u, 31u}) slots.changed(type);
+    paused = false;
+  }
+  if (safety.stops_motion()) paused = true;
+
+  const Joints before = motion.joints();
+  if (power.ready()) {
+    motion.hold(paused);
+    // Recovery mode leaves the user's limits, not the arm's (spec 5.6).
+    const JointLimits& l = recovery_mode ? kModelLimits : limits.effective();
+    if (const auto code = motion.advance(now, dt, l, recovery_mode); code != error::kNone) fail(code);
+  }
+  const double seconds = std::chrono::duration<double>(dt).count();
+  for (std::size_t i = 0; i < 6; ++i) joint_velocity[i] = (motion.joints()[i] - before[i]) / seconds;
+  if (motion.moving()) slots.measured_changed();
+  report();
+}
+
+void Robot::State::report() noexcept {
+  image::RobotStatus& r = inputs.robot_status;
+  r.busy = power.busy();
+  r.activated = power.activated();
+  r.homed = power.homed();
+  r.sim_activated = sim_mode;
+  r.brakes_engaged = !power.activated() && !brakes_released_by_hand;
+  r.recovery_mode = recovery_mode;
+  r.monitoring_mode = monitoring && options.layout == image::Layout::kFirmware11;
+  r.error_code = error;
+
+  image::MotionStatus& m = inputs.motion_status;
+  const bool moving = motion.moving();
+  m.checkpoint_reached = motion.checkpoint_reached();
+  m.checkpoint_discarded = options.layout == image::Layout::kFirmware11 ? motion.checkpoint_discarded() : 0;
+  m.move_id = move_id;
+  m.fifo_space = static_cast<std::uint16_t>(motion.fifo_space());
+  m.paused = paused && power.activated();
+  m.eom = !moving;
+  m.eob = !moving && motion.nothing_to_do();
+  m.cleared = (cleared || !power.activated()) && !moving;
+
+  report_pose();
+  safety.report(options.layout, inputs);
+  const auto since_boot = std::chrono::duration_cast<std::chrono::microseconds>(kBoot + now).count();
+  inputs.robot_timestamp.seconds = static_cast<std::uint32_t>(since_boot / 1'000'000);
+  inputs.robot_timestamp.microseconds = static_cast<std::uint32_t>(since_boot % 1'000'000);
+  report_dynamic_data();
+}
+
+// The pose belongs to the joints as they are published, so that a reader finds both to agree.
+void Robot::State::report_pose() noexcept {
+  Joints rounded;
+  for (std::size_t i = 0; i < 6; ++i) {
+    inputs.target_joint_set.joints[i] = static_cast<float>(motion.joints()[i]);
+    rounded[i] = inputs.target_joint_set.joints[i];
+  }
+  const bool settings_changed = shown_settings != motion.settings_version();
+  if (settings_changed) {
+    for (const std::uint32_t type : {20u, 21u, 22u, 31u}) slots.changed(type);
+  }
+  if (shown_before && !settings_changed && rounded == shown_joints) return;
+  shown_before = true;
+  shown_joints = rounded;
+  shown_settings = motion.settings_version();
+
+  const Settings& s = motion.settings();
+  inputs.target_end_effector_pose = to_image(to_pose(inverse(s.wrf_transform) * forward(rounded) * s.trf_transform));
+  inputs.target_wrf = to_image(s.wrf);
+  inputs.target_trf = to_image(s.trf);
+  const Posture p = posture(rounded);
+  image::TargetConfiguration& c = inputs.target_configuration;
+  c.shoulder = static_cast<std::int8_t>(p.shoulder);
+  c.elbow = static_cast<std::int8_t>(p.elbow);
+  c.wrist = static_cast<std::int8_t>(p.wrist);
+  c.turn = static_cast<std::int8_t>(turn(rounded[5]));
+}
+
+void Robot::State::report_dynamic_data() noexcept {
+  const auto types = slots.advance(outputs.dynamic_data_configuration.type_ids);
+  const DynamicSource source{options, motion.settings(), limits, motion.joints(), joint_velocity, cycle};
+  for (std::size_t i = 0; i < image::kDynamicSlots; ++i) {
+    inputs.dynamic_data[i] = {types[i], dynamic_values(types[i], source)};
+  }
+  inputs.robot_timestamp.dynamic_data_update_count = slots.update_count();
+}
+
+}  // namespace meca::sim

@@ -1,0 +1,35 @@
+// Velocity mode: MoveJointsVel, MoveLinVelWrf and MoveLinVelTrf. No errors at limits: the arm halts slightly before a
+// joint limit, and before a singularity that it would have to cross (manual, MoveJointsVel and MoveLinVelWrf).
+#pragma once
+
+#include "sim/journal.hpp"
+#include "sim/settings.hpp"
+
+namespace meca::sim {
+
+class VelocityMode {
+ public:
+  // A fresh command; its time-out starts anew.
+  void command(const Command& command) noexcept;
+  // Ramps down to rest; active() until then.
+  void cancel() noexcept { cancelled_ = true; }
+  // At once, without a ramp: motors off.
+  void halt() noexcept;
+
+  // Moves the joints by `seconds` (already time-scaled). Runs the time-out.
+  void step(double seconds, const Settings& settings, const JointLimits& limits, bool recovery_mode,
+            Joints& joints) noexcept;
+
+  bool active() const noexcept { return active_; }
+  bool moving() const noexcept { return moving_; }
+
+ private:
+  Command command_;
+  bool active_ = false, cancelled_ = false, moving_ = false;
+  double age_ = 0;     // s since the last command
+  Joints velocity_{};  // deg/s, now
+
+  Joints wanted(const Settings& settings, const Dynamics& d, const Joints& q) const noexcept;
+};
+
+}  // namespace meca::sim
