@@ -9,8 +9,8 @@ cat <<'TEXT'
 The bridge runs in this terminal until Ctrl-C. In a second one:
 
   build/release/bin/meca-ctl status
-  build/release/bin/meca-ctl activate --wait
-  build/release/bin/meca-ctl home --wait
+  build/release/bin/meca-ctl activate
+  build/release/bin/meca-ctl home
   build/release/bin/meca-ctl move-joints 30 20 -10 15 40 0 --wait
   build/release/bin/meca-ctl watch
 
