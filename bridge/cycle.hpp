@@ -21,22 +21,22 @@ using transports::Time;
 enum class Quality : std::uint8_t { kUnknown, kGood, kStale, kDisconnected };
 
 struct Stamp {
-  Time now{};                 // monotonic
-  std::int64_t unix_ns = 0;   // wall clock, for people and for HostTime only: nothing is decided by it
+  Time now{};                // monotonic
+  std::int64_t unix_ns = 0;  // wall clock, for people and for HostTime only: nothing is decided by it
 };
 
 // Limits and choices of one robot, from its configuration.
 struct CycleSettings {
   Time cycle = std::chrono::milliseconds(1);
   std::endian byte_order = std::endian::little;
-  Time lease = std::chrono::milliseconds(100);           // control lapses when not renewed for this long
-  Time velocity_lease = std::chrono::milliseconds(50);   // velocity stream: zero velocity when not fresh
-  Time stale_after = std::chrono::milliseconds(3);       // no fresh image for longer: quality STALE
-  Time action_timeout = std::chrono::seconds(30);        // activate, home, ...: a missing confirmation is an answer
-  Time acknowledge_timeout = std::chrono::seconds(1);    // MoveID echo
-  bool monitoring_only = false;                          // this bridge never commands this robot
+  Time lease = std::chrono::milliseconds(100);          // control lapses when not renewed for this long
+  Time velocity_lease = std::chrono::milliseconds(50);  // velocity stream: zero velocity when not fresh
+  Time stale_after = std::chrono::milliseconds(3);      // no fresh image for longer: quality STALE
+  Time action_timeout = std::chrono::seconds(30);       // activate, home, ...: a missing confirmation is an answer
+  Time acknowledge_timeout = std::chrono::seconds(1);   // MoveID echo
+  bool monitoring_only = false;                         // this bridge never commands this robot
   bool allow_brakes = false;
-  transports::FirmwareVersion firmware{};                // expected; all 0 = auto
+  transports::FirmwareVersion firmware{};                          // expected; all 0 = auto
   std::array<std::uint32_t, image::kDynamicSlots> dynamic_data{};  // types to ask for; 0 = automatic
 };
 
@@ -49,18 +49,18 @@ struct CycleCounters {
 // Everything the publisher needs to know of one cycle of one robot.
 struct CycleRecord {
   std::uint64_t cycle = 0;
-  std::int64_t receive_unix_ns = 0;      // of the image in `inputs`
+  std::int64_t receive_unix_ns = 0;  // of the image in `inputs`
   Quality quality = Quality::kDisconnected;
   transports::LinkState link = transports::LinkState::kDown;
-  std::string_view link_detail;          // static text
+  std::string_view link_detail;  // static text
   bool firmware_known = false;
-  bool firmware_mismatch = false;        // the robot reports another layout than the configuration expects
+  bool firmware_mismatch = false;  // the robot reports another layout than the configuration expects
   transports::FirmwareVersion firmware;
   image::Layout layout = image::Layout::kFirmware11;
-  std::uint32_t product_type = 0;        // dynamic data type 2; 3 = Meca500 R3, 4 = R4; 0 = not known yet
-  std::uint32_t serial_number = 0;       // dynamic data type 3; 0 = not known yet
-  image::Inputs inputs;                  // last known
-  image::Outputs outputs;                // what is being sent in this cycle
+  std::uint32_t product_type = 0;   // dynamic data type 2; 3 = Meca500 R3, 4 = R4; 0 = not known yet
+  std::uint32_t serial_number = 0;  // dynamic data type 3; 0 = not known yet
+  image::Inputs inputs;             // last known
+  image::Outputs outputs;           // what is being sent in this cycle
   control::ControlState control;
   CycleCounters counters;
 };

@@ -34,8 +34,21 @@ using ClientName = FixedString<63>;
 using ParticipantId = std::array<std::byte, 12>;  // DDS GUID prefix: which participant wrote the sample
 
 enum class CommandKind : std::uint8_t {
-  kTakeControl, kReleaseControl, kActivate, kDeactivate, kHome, kResetError, kPauseMotion, kResumeMotion,
-  kClearMotion, kSimMode, kRecoveryMode, kBrakes, kDynamicData, kSetHostTime, kMotion,
+  kTakeControl,
+  kReleaseControl,
+  kActivate,
+  kDeactivate,
+  kHome,
+  kResetError,
+  kPauseMotion,
+  kResumeMotion,
+  kClearMotion,
+  kSimMode,
+  kRecoveryMode,
+  kBrakes,
+  kDynamicData,
+  kSetHostTime,
+  kMotion,
 };
 
 enum class LossPolicy : std::uint8_t { kStopMotion, kFinishMotion };
@@ -75,14 +88,39 @@ struct ShutdownRequest {};
 using Request = std::variant<CommandRequest, VelocityRequest, LeaseRenewal, ShutdownRequest>;
 
 enum class ReceiptState : std::uint8_t {
-  kAccepted, kSent, kAcknowledged, kCompleted, kDiscarded, kRejected, kAborted,
+  kAccepted,
+  kSent,
+  kAcknowledged,
+  kCompleted,
+  kDiscarded,
+  kRejected,
+  kAborted,
 };
 constexpr bool is_terminal(ReceiptState s) noexcept { return s >= ReceiptState::kCompleted; }
 
 enum class Reason : std::uint8_t {
-  kNone, kNotOwner, kMonitoringOnly, kNoLink, kFirmwareUnknown, kUnknownCommand, kArgumentCount, kArgumentRange,
-  kNotActivated, kNotHomed, kWrongState, kRobotError, kSafetyStop, kPaused, kQueueFull, kTimeOut, kLinkLost,
-  kOwnerLost, kCleared, kNotAllowed, kShutdown, kDuplicate,
+  kNone,
+  kNotOwner,
+  kMonitoringOnly,
+  kNoLink,
+  kFirmwareUnknown,
+  kUnknownCommand,
+  kArgumentCount,
+  kArgumentRange,
+  kNotActivated,
+  kNotHomed,
+  kWrongState,
+  kRobotError,
+  kSafetyStop,
+  kPaused,
+  kQueueFull,
+  kTimeOut,
+  kLinkLost,
+  kOwnerLost,
+  kCleared,
+  kNotAllowed,
+  kShutdown,
+  kDuplicate,
 };
 
 struct Receipt {
@@ -94,9 +132,9 @@ struct Receipt {
   // What the sentence for people needs; the publisher writes the sentence (receipt_text.hpp).
   CommandKind kind = CommandKind::kTakeControl;
   std::uint32_t motion_command_id = 0;
-  std::uint8_t argument = 0;            // kArgumentRange: index; kArgumentCount: how many came
+  std::uint8_t argument = 0;  // kArgumentRange: index; kArgumentCount: how many came
   double value = 0, minimum = 0, maximum = 0;
-  ClientName other;                     // kNotOwner: who has control
+  ClientName other;  // kNotOwner: who has control
 };
 
 struct ControlState {
@@ -107,7 +145,7 @@ struct ControlState {
   std::uint32_t lease_ms = 0;
   LossPolicy on_loss = LossPolicy::kStopMotion;
   bool monitoring_only = false;
-  Receipt last_refusal;                 // client empty: none yet
+  Receipt last_refusal;  // client empty: none yet
   ClientName last_owner;
   enum class Loss : std::uint8_t { kNone, kReleased, kLeaseExpired, kLinkLost, kShutdown } last_loss = Loss::kNone;
 };

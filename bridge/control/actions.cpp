@@ -1,0 +1,516 @@
+#include "bridge/control/actions.hpp"
+
+#include <algorithm>
+
+namespace meca::control {
+namespace {
+
+using image::Layout;
+
+constexpr Time kAskTwiceWithin = std::chrono::seconds(5);
+// not published: how soon after a deactivation the drives take an activation; a short rest costs nobody anything.
+constexpr Time kReactivationRest = std::chrono::milliseconds(100);
+// Dynamic data follows 1-2 cycles after the request (spec 5.7); a type the robot does not have never comes.
+constexpr Time kDynamicDataTimeout = std::chrono::seconds(3);
+
+bool motion_events(const image::Inputs& in) noexcept {
+  return safety_stop(in) || in.robot_status.collision_status || in.robot_status.work_zone_status;
+}
+
+}  // namespace
+
+Actions::Actions(Ledger& ledger, const Settings& settings) noexcept
+    : ledger_(ledger), settings_(settings), dynamic_data_(settings.dynamic_data) {}
+
+void Actions::seed(const View& view) noexcept {
+  sim_mode_ = view.in.robot_status.sim_activated;
+  recovery_mode_ = view.in.robot_status.recovery_mode;
+  // On firmware 9 letting go of Pause starts the robot by itself. A deactivated robot has an empty queue: nothing to
+  // hold.
+  pause_ = pause_by_stop_ = view.in.motion_status.paused && view.in.robot_status.activated;
+  brakes_gate_ = brakes_engaged_ = brakes_returning_ = false;
+  deactivated_at_.reset();
+}
+
+bool Actions::urgent(CommandKind kind) noexcept {
+  return kind == CommandKind::kPauseMotion || kind == CommandKind::kClearMotion || kind == CommandKind::kDeactivate;
+}
+
+const Actions::Action* Actions::running(CommandKind kind) const noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (actions_[i].ticket.kind == kind && actions_[i].phase != Phase::kQueued) return &actions_[i];
+  }
+  return nullptr;
+}
+
+// Nothing of its kind of turn is in front of it.
+bool Actions::may_start(const Action& action) const noexcept {
+  if (urgent(action.ticket.kind)) return true;
+  for (std::size_t i = 0; i < count_ && &actions_[i] != &action; ++i) {
+    if (!urgent(actions_[i].ticket.kind)) return false;
+  }
+  return true;
+}
+
+Actions::Action Actions::make(const CommandRequest& request, const Ticket& ticket) noexcept {
+  Action action;
+  action.ticket = ticket;
+  action.wanted = request.arguments[0] != 0;
+  if (request.kind == CommandKind::kDynamicData) {  // ranges were checked
+    action.slot = static_cast<std::uint8_t>(request.arguments[0]);
+    action.type = static_cast<std::uint32_t>(request.arguments[1]);
+  }
+  return action;
+}
+
+std::optional<Refusal> Actions::check(const CommandRequest& request, const Ticket& ticket, const View& view) noexcept {
+  if (const auto refusal = check_action_arguments(request)) return refusal;
+  if (count_ + (urgent(request.kind) ? 0 : kUrgentPlaces) >= kMaxActions) return Refusal{Reason::kQueueFull};
+  const Action action = make(request, ticket);
+  if (may_start(action)) {
+    if (const auto refusal = check_start(action, view)) return refusal;
+  }
+  if (request.kind == CommandKind::kBrakes && !action.wanted) {
+    const bool asked = brakes_asked_ && view.now - *brakes_asked_ <= kAskTwiceWithin && brakes_client_ == ticket.client;
+    brakes_client_ = ticket.client;
+    if (asked) {
+      brakes_asked_.reset();
+    } else {
+      brakes_asked_ = view.now;
+      const auto seconds = std::chrono::duration<double>(kAskTwiceWithin).count();
+      return Refusal{Reason::kNotAllowed, {.value = seconds, .maximum = seconds}};  // describe(): send it again
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Refusal> Actions::check_start(const Action& a, const View& view) const noexcept {
+  const image::RobotStatus& s = view.in.robot_status;
+  const auto error = [&s]() { return Refusal{Reason::kRobotError, {.robot_error = s.error_code}}; };
+  switch (a.ticket.kind) {
+    case CommandKind::kActivate:
+      if (s.activated) return std::nullopt;
+      if (s.error_code != 0) return error();
+      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
+      return std::nullopt;
+    case CommandKind::kHome:
+      if (!s.activated) return Refusal{Reason::kNotActivated};
+      if (s.homed) return std::nullopt;
+      if (s.error_code != 0) return error();
+      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
+      return std::nullopt;
+    case CommandKind::kResumeMotion:
+      if (s.error_code != 0) return error();
+      if (!s.activated) return Refusal{Reason::kNotActivated};
+      if (unresettable_stop(view.in, view.layout)) return Refusal{Reason::kSafetyStop};
+      return std::nullopt;
+    case CommandKind::kPauseMotion:
+      if (!s.activated && !view.in.motion_status.paused) return Refusal{Reason::kNotActivated};
+      return std::nullopt;
+    case CommandKind::kSimMode:
+      if (s.sim_activated == a.wanted) return std::nullopt;
+      if (s.activated || s.busy) return Refusal{Reason::kWrongState};
+      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
+      return std::nullopt;
+    case CommandKind::kBrakes:
+      if (!settings_.allow_brakes) return Refusal{Reason::kNotAllowed};
+      if (s.activated || s.busy) return Refusal{Reason::kWrongState};
+      return std::nullopt;
+    case CommandKind::kSetHostTime:
+      if (view.unix_ns <= 0) return Refusal{Reason::kWrongState};
+      return std::nullopt;
+    case CommandKind::kDeactivate:
+    case CommandKind::kResetError:
+    case CommandKind::kClearMotion:
+    case CommandKind::kRecoveryMode:
+    case CommandKind::kDynamicData:
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// The status bit that answers the action.
+bool Actions::confirmed(const Action& a, const View& view) const noexcept {
+  const image::RobotStatus& s = view.in.robot_status;
+  const image::MotionStatus& m = view.in.motion_status;
+  switch (a.ticket.kind) {
+    case CommandKind::kActivate:
+      return s.activated;
+    case CommandKind::kDeactivate:
+      return !s.activated && !s.busy;
+    case CommandKind::kHome:
+      return s.homed && s.activated;
+    case CommandKind::kResetError:
+      return s.error_code == 0;
+    case CommandKind::kPauseMotion:
+      return m.paused;
+    case CommandKind::kResumeMotion:
+      return !m.paused;
+    case CommandKind::kClearMotion:
+      return m.cleared;
+    case CommandKind::kSimMode:
+      return s.sim_activated == a.wanted;
+    case CommandKind::kRecoveryMode:
+      return s.recovery_mode == a.wanted;
+    case CommandKind::kBrakes:
+      return s.brakes_engaged == a.wanted;
+    case CommandKind::kDynamicData:
+      return a.type == 0 || view.in.dynamic_data[a.slot].type_id == a.type;
+    case CommandKind::kSetHostTime:
+      return true;  // not published: nothing confirms it; three images long is enough
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      return true;
+  }
+  return true;
+}
+
+bool Actions::already_done(const Action& a, const View& view, bool nothing_queued) const noexcept {
+  if (!confirmed(a, view)) return false;
+  switch (a.ticket.kind) {
+    case CommandKind::kPauseMotion:
+      return pause_ || view.layout != Layout::kFirmware9;
+    case CommandKind::kResumeMotion:
+      return !pause_ && !motion_events(view.in);
+    case CommandKind::kClearMotion:
+      return nothing_queued;
+    case CommandKind::kDeactivate:
+      return !running(CommandKind::kActivate);
+    case CommandKind::kBrakes:
+      return a.wanted != brakes_gate_;  // engaged: the gate is closed; released: it is open
+    case CommandKind::kDynamicData:
+      return dynamic_data_[a.slot] == a.type;
+    case CommandKind::kSetHostTime:
+      return false;
+    case CommandKind::kActivate:
+    case CommandKind::kHome:
+    case CommandKind::kResetError:
+    case CommandKind::kSimMode:
+    case CommandKind::kRecoveryMode:
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      return true;
+  }
+  return true;
+}
+
+void Actions::accept(const CommandRequest& request, const Ticket& ticket, const View& view,
+                     bool nothing_queued) noexcept {
+  Action action = make(request, ticket);
+  if (may_start(action) && already_done(action, view, nothing_queued)) {
+    ledger_.report(ticket, ReceiptState::kCompleted);
+    return;
+  }
+  if (request.kind == CommandKind::kDeactivate) overtake(true, Reason::kNotActivated);
+  if (request.kind == CommandKind::kClearMotion) overtake(false, Reason::kCleared);
+  if (request.kind == CommandKind::kPauseMotion) overtake(false, Reason::kPaused);
+  ledger_.report(ticket, ReceiptState::kAccepted);
+  actions_[count_++] = action;
+}
+
+void Actions::overtake(bool deactivate, Reason reason) noexcept {
+  for (std::size_t i = count_; i-- > 0;) {
+    const Action a = actions_[i];
+    const CommandKind kind = a.ticket.kind;
+    const bool contradicted = kind == CommandKind::kResumeMotion ||
+                              (deactivate && (kind == CommandKind::kActivate || kind == CommandKind::kHome));
+    if (!contradicted) continue;
+    remove(i);
+    const bool sent = a.phase != Phase::kQueued;
+    if (sent) revert(a);
+    ledger_.report(a.ticket, sent ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason);
+  }
+}
+
+void Actions::remove(std::size_t index) noexcept {
+  std::copy(actions_.begin() + index + 1, actions_.begin() + count_, actions_.begin() + index);
+  --count_;
+}
+
+void Actions::enter(Action& a, Phase phase, const View& view) noexcept {
+  a.phase = phase;
+  a.images = 0;
+  a.settle = confirmed(a, view);
+}
+
+void Actions::start(Action& a, const View& view) noexcept {
+  ledger_.report(a.ticket, ReceiptState::kSent);
+  a.started = view.now;
+  enter(a, Phase::kSent, view);
+  switch (a.ticket.kind) {
+    case CommandKind::kPauseMotion:
+      if (!pause_) pause_by_stop_ = false;
+      pause_ = true;
+      break;
+    case CommandKind::kResumeMotion:
+      if (view.layout == Layout::kFirmware9) {
+        pause_by_stop_ || !pause_ ? enter(a, Phase::kClearFirst, view) : let_go(a, view);
+      } else {
+        enter(a, Phase::kLowerLevels, view);
+        pause_ = false;
+      }
+      break;
+    case CommandKind::kSimMode:
+      sim_mode_ = a.wanted;
+      break;
+    case CommandKind::kRecoveryMode:
+      recovery_mode_ = a.wanted;
+      break;
+    case CommandKind::kBrakes:
+      brakes_gate_ = true;
+      brakes_engaged_ = a.wanted;
+      brakes_returning_ = false;
+      break;
+    case CommandKind::kDynamicData:
+      a.previous_type = dynamic_data_[a.slot];
+      dynamic_data_[a.slot] = a.type;
+      break;
+    case CommandKind::kSetHostTime:
+      host_time_ = static_cast<std::uint32_t>(view.unix_ns / 1'000'000'000);
+      break;
+    case CommandKind::kActivate:
+      brakes_gate_ = brakes_engaged_ = false;
+      break;
+    case CommandKind::kDeactivate:
+    case CommandKind::kHome:
+    case CommandKind::kResetError:
+    case CommandKind::kClearMotion:
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      break;
+  }
+}
+
+std::optional<Refusal> Actions::failed(const Action& a, const View& view) const noexcept {
+  const CommandKind kind = a.ticket.kind;
+  const image::RobotStatus& s = view.in.robot_status;
+  const bool moves = kind == CommandKind::kActivate || kind == CommandKind::kHome;
+  const bool needs_health = moves || kind == CommandKind::kResumeMotion || kind == CommandKind::kSimMode ||
+                            kind == CommandKind::kRecoveryMode;
+  if (needs_health && view.fresh && s.error_code != 0) {
+    return Refusal{Reason::kRobotError, {.robot_error = s.error_code}};
+  }
+  if (moves && view.fresh && safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
+  const Time timeout =
+      kind == CommandKind::kDynamicData ? std::min(kDynamicDataTimeout, settings_.timeout) : settings_.timeout;
+  if (view.now - a.started > timeout) return Refusal{Reason::kTimeOut, {.robot_error = s.error_code}};
+  return std::nullopt;
+}
+
+Actions::Verdict Actions::step(Action& a, const View& view) noexcept {
+  if (!view.fresh) return Verdict::kGoOn;
+  ++a.images;
+  if (a.ticket.kind == CommandKind::kResumeMotion) return step_resume(a, view);
+  if (!confirmed(a, view) || (a.settle && a.images < kSettleImages)) return Verdict::kGoOn;
+  return Verdict::kDone;
+}
+
+// Firmware 9: the P-Stop, where there is one, is reset first.
+void Actions::let_go(Action& a, const View& view) noexcept {
+  if (view.in.motion_status.p_stop2) {
+    enter(a, Phase::kResetPStop, view);
+    return;
+  }
+  enter(a, Phase::kRelease, view);
+  pause_ = false;
+}
+
+// ResumeMotion is a rising edge and works only with Pause and Clear at 0 (spec 5.4): let both be seen low, then raise
+// it. Firmware 9 has no such bit: motion resumes when Pause and Clear are low, so what a stop has left in the queue
+// goes first.
+Actions::Verdict Actions::step_resume(Action& a, const View& view) noexcept {
+  const bool settled = a.images >= kSettleImages;
+  switch (a.phase) {
+    case Phase::kLowerLevels:
+      if (settled) enter(a, Phase::kRaise, view);
+      return Verdict::kGoOn;
+    case Phase::kRaise:
+      return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
+    case Phase::kClearFirst:
+      if (settled && view.in.motion_status.cleared) let_go(a, view);
+      return Verdict::kGoOn;
+    case Phase::kResetPStop:
+      if (!view.in.motion_status.p_stop2) let_go(a, view);
+      return Verdict::kGoOn;
+    case Phase::kRelease:
+      return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
+    case Phase::kQueued:
+    case Phase::kSent:
+      return Verdict::kGoOn;
+  }
+  return Verdict::kGoOn;
+}
+
+void Actions::finish(const Action& a) noexcept {
+  switch (a.ticket.kind) {
+    case CommandKind::kResumeMotion:
+      pause_by_stop_ = false;
+      break;
+    case CommandKind::kBrakes:
+      if (a.wanted) brakes_gate_ = brakes_engaged_ = false;
+      break;
+    case CommandKind::kSetHostTime:
+      host_time_ = 0;
+      break;
+    case CommandKind::kActivate:
+    case CommandKind::kDeactivate:
+    case CommandKind::kHome:
+    case CommandKind::kResetError:
+    case CommandKind::kPauseMotion:
+    case CommandKind::kClearMotion:
+    case CommandKind::kSimMode:
+    case CommandKind::kRecoveryMode:
+    case CommandKind::kDynamicData:
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      break;
+  }
+}
+
+// An action that did not come true leaves no level behind that asks for it.
+void Actions::revert(const Action& a) noexcept {
+  switch (a.ticket.kind) {
+    case CommandKind::kResumeMotion:
+      pause_ = pause_by_stop_ = true;
+      break;  // still stopped, as far as we know
+    case CommandKind::kSimMode:
+      sim_mode_ = !a.wanted;
+      break;
+    case CommandKind::kRecoveryMode:
+      recovery_mode_ = !a.wanted;
+      break;
+    case CommandKind::kBrakes:
+      engage_brakes();
+      break;
+    case CommandKind::kDynamicData:
+      dynamic_data_[a.slot] = a.previous_type;
+      break;
+    case CommandKind::kSetHostTime:
+      host_time_ = 0;
+      break;
+    case CommandKind::kPauseMotion:  // stays: safe, and it may yet be heard
+    case CommandKind::kActivate:
+    case CommandKind::kDeactivate:
+    case CommandKind::kHome:
+    case CommandKind::kResetError:
+    case CommandKind::kClearMotion:
+    case CommandKind::kTakeControl:
+    case CommandKind::kReleaseControl:
+    case CommandKind::kMotion:
+      break;
+  }
+}
+
+Actions::Events Actions::advance(const View& view, bool hold) noexcept {
+  Events events;
+  if (view.fresh && brakes_returning_ && (view.in.robot_status.brakes_engaged || view.in.robot_status.activated)) {
+    brakes_returning_ = brakes_gate_ = brakes_engaged_ = false;
+  }
+  for (std::size_t i = 0; i < count_;) {
+    Action& a = actions_[i];
+    const CommandKind kind = a.ticket.kind;
+    if (hold && !urgent(kind)) {
+      ++i;
+      continue;
+    }
+    if (a.phase == Phase::kQueued) {
+      const bool resting =
+          kind == CommandKind::kActivate && deactivated_at_ && view.now - *deactivated_at_ < kReactivationRest;
+      if (!may_start(a) || resting) {
+        ++i;
+        continue;
+      }
+      const auto refusal = check_start(a, view);
+      const bool done = !refusal && !urgent(kind) && already_done(a, view, false);
+      if (refusal || done) {
+        ledger_.report(a.ticket, done ? ReceiptState::kCompleted : ReceiptState::kRejected,
+                       done ? Reason::kNone : refusal->reason, done ? Detail{} : refusal->detail);
+        remove(i);
+        continue;
+      }
+      start(a, view);
+      events.clear_started |= kind == CommandKind::kClearMotion;
+      ++i;
+      continue;
+    }
+    const bool was_clearing_first = a.phase == Phase::kClearFirst;
+    if (step(a, view) == Verdict::kDone) {
+      const Action done = a;
+      remove(i);
+      finish(done);
+      events.clear_confirmed |= kind == CommandKind::kClearMotion;
+      if (kind == CommandKind::kDeactivate) deactivated_at_ = view.now;
+      ledger_.report(done.ticket, ReceiptState::kCompleted);
+    } else if (const auto failure = failed(a, view)) {
+      const Action lost = a;
+      remove(i);
+      revert(lost);
+      ledger_.report(lost.ticket, ReceiptState::kAborted, failure->reason, failure->detail);
+    } else {
+      events.clear_confirmed |= was_clearing_first && a.phase != Phase::kClearFirst;
+      ++i;
+    }
+  }
+  return events;
+}
+
+void Actions::end_all(Reason reason) noexcept {
+  for (; count_ > 0;) {
+    const Action a = actions_[count_ - 1];
+    --count_;
+    const bool sent = a.phase != Phase::kQueued;
+    if (sent) revert(a);
+    ledger_.report(a.ticket, sent ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason);
+  }
+  brakes_asked_.reset();
+}
+
+void Actions::discard_queued(Reason reason) noexcept {
+  for (std::size_t i = count_; i-- > 0;) {
+    if (actions_[i].phase != Phase::kQueued) continue;
+    ledger_.report(actions_[i].ticket, ReceiptState::kDiscarded, reason);
+    remove(i);
+  }
+}
+
+void Actions::hold_pause(Reason reason) noexcept {
+  overtake(false, reason);
+  pause_ = pause_by_stop_ = true;
+}
+
+void Actions::engage_brakes() noexcept {
+  if (!brakes_gate_) return;
+  brakes_engaged_ = brakes_returning_ = true;
+}
+
+bool Actions::clearing() const noexcept {
+  if (running(CommandKind::kClearMotion)) return true;
+  const Action* resume = running(CommandKind::kResumeMotion);
+  return resume && (resume->phase == Phase::kClearFirst || (resume->phase == Phase::kResetPStop && pause_by_stop_));
+}
+
+void Actions::write(image::Outputs& out) const noexcept {
+  out.robot_control.deactivate = running(CommandKind::kDeactivate) != nullptr;
+  out.robot_control.activate = running(CommandKind::kActivate) != nullptr;
+  out.robot_control.home = running(CommandKind::kHome) != nullptr;
+  out.robot_control.reset_error = running(CommandKind::kResetError) != nullptr;
+  out.robot_control.sim_mode = sim_mode_;
+  out.robot_control.recovery_mode = recovery_mode_;
+  out.motion_control.pause_motion = pause_;
+  out.motion_control.clear_motion = clearing();
+  const Action* resume = running(CommandKind::kResumeMotion);
+  // Phase kResetPStop: on firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset.
+  out.motion_control.resume_motion = resume && (resume->phase == Phase::kRaise || resume->phase == Phase::kResetPStop);
+  out.brakes_control.brakes_control_allowed = brakes_gate_;
+  out.brakes_control.brakes_engaged = brakes_engaged_;
+  out.host_time.seconds = host_time_;
+}
+
+}  // namespace meca::control

@@ -1,0 +1,229 @@
+#include "bridge/control/move_sequencer.hpp"
+
+namespace meca::control {
+namespace {
+
+constexpr std::uint16_t kWholeQueue = 13000;  // FIFOSpace of an empty queue (spec 1.2)
+
+// A client's checkpoint reached in the same robot cycle as ours hides ours: the image shows the last one only. An empty
+// queue and a standing arm for this many images prove the same. inferred: EOB may come early, but not for this long.
+constexpr int kIdleProof = 200;
+
+constexpr bool own_checkpoint(std::uint32_t n) noexcept { return n >= kFirstOwnCheckpoint && n <= kLastOwnCheckpoint; }
+
+constexpr bool needs_motors(image::CommandClass c) noexcept {
+  return c == image::CommandClass::kMotion || c == image::CommandClass::kQueued;
+}
+
+}  // namespace
+
+MoveSequencer::MoveSequencer(Ledger& ledger, Time acknowledge_timeout) noexcept
+    : ledger_(ledger), acknowledge_timeout_(acknowledge_timeout) {}
+
+void MoveSequencer::seed(const View& view) noexcept {
+  const std::uint16_t echo = view.in.motion_status.move_id;
+  if (flight_) {
+    if (echo == move_id_) {
+      acknowledged();
+    } else {
+      ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, Reason::kLinkLost);
+      flight_.reset();
+    }
+  }
+  // Its checkpoint was never sent, so its end cannot be seen any more.
+  if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kAborted, Reason::kLinkLost);
+  checkpoint_due_.reset();
+  if (seeded_) {
+    reached(view);
+  } else {
+    // Half the range further: whatever an earlier life of this bridge left in the robot's queue is passed before ours.
+    const std::uint32_t last = view.in.motion_status.checkpoint_reached;
+    if (own_checkpoint(last)) {
+      next_checkpoint_ =
+          kFirstOwnCheckpoint + (last - kFirstOwnCheckpoint + 500) % (kLastOwnCheckpoint - kFirstOwnCheckpoint + 1);
+    }
+  }
+  seeded_ = true;
+  last_reached_ = view.in.motion_status.checkpoint_reached;
+  last_discarded_ = view.in.motion_status.checkpoint_discarded;
+  move_id_ = last_id_ = echo;
+  command_ = 0;
+  arguments_ = {};
+  use_variables_ = armed_ = withdrawing_ = false;
+  fresh_since_echo_ = kSettleImages;
+}
+
+std::uint16_t MoveSequencer::next_id(std::uint16_t echo) const noexcept {
+  std::uint16_t id = last_id_;
+  do {
+    id = id == 65535 ? 1 : static_cast<std::uint16_t>(id + 1);
+  } while (id == echo);
+  return id;
+}
+
+void MoveSequencer::observe(const View& view) noexcept {
+  if (view.fresh) {
+    const std::uint16_t echo = view.in.motion_status.move_id;
+    if (fresh_since_echo_ < kSettleImages) ++fresh_since_echo_;
+    if (flight_ && echo == move_id_) acknowledged();
+    if (withdrawing_ && (echo == move_id_ || ++withdrawn_images_ > kSettleImages)) {
+      withdrawing_ = false;
+      move_id_ = echo;  // with SetPoint 0 the robot does not look at it
+    }
+    reached(view);
+  }
+  if (flight_ && view.now - flight_->sent_at > acknowledge_timeout_) {
+    // What follows was meant to come after it: a path with a hole in it is not the client's path.
+    end_all(ReceiptState::kAborted, Reason::kTimeOut);
+  }
+}
+
+void MoveSequencer::acknowledged() noexcept {
+  fresh_since_echo_ = 0;
+  idle_images_ = 0;
+  const Flight flight = *flight_;
+  flight_.reset();
+  const Ticket& ticket = flight.motion.ticket;
+  if (flight.is_checkpoint) {
+    awaiting_.push({ticket, flight.checkpoint});
+    return;
+  }
+  ledger_.report(ticket, ReceiptState::kAcknowledged);
+  if (dropping_ || (flight.motion.report_completion && needs_motors(flight.motion.command_class))) {
+    checkpoint_due_ = ticket;
+  } else {
+    ledger_.report(ticket, ReceiptState::kCompleted);
+  }
+}
+
+void MoveSequencer::complete_through(std::size_t count) noexcept {
+  for (; count > 0; --count) {
+    ledger_.report(awaiting_.front().ticket, ReceiptState::kCompleted);
+    awaiting_.pop();
+  }
+}
+
+void MoveSequencer::reached(const View& view) noexcept {
+  const image::MotionStatus& m = view.in.motion_status;
+  if (m.checkpoint_reached != last_reached_) {
+    last_reached_ = m.checkpoint_reached;
+    for (std::size_t i = 0; i < awaiting_.size(); ++i) {
+      if (awaiting_.at(i).checkpoint == last_reached_) {
+        complete_through(i + 1);  // several may be reached between two images; the queue keeps their order
+        break;
+      }
+    }
+  }
+  if (m.checkpoint_discarded != last_discarded_) {
+    last_discarded_ = m.checkpoint_discarded;
+    for (std::size_t i = 0; i < awaiting_.size(); ++i) {
+      if (awaiting_.at(i).checkpoint != last_discarded_) continue;
+      for (std::size_t n = 0; n <= i; ++n) {
+        ledger_.report(awaiting_.front().ticket, ReceiptState::kDiscarded, Reason::kCleared);
+        awaiting_.pop();
+      }
+      break;
+    }
+  }
+  // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).
+  if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) {
+    for (; !awaiting_.empty(); awaiting_.pop()) {
+      ledger_.report(awaiting_.front().ticket, ReceiptState::kDiscarded, Reason::kCleared);
+    }
+  }
+  const bool empty = m.eob && m.eom && m.fifo_space >= kWholeQueue && !m.cleared && !m.paused;
+  const bool hidden = empty && !flight_ && !awaiting_.empty() && !own_checkpoint(m.checkpoint_reached);
+  idle_images_ = hidden ? idle_images_ + 1 : 0;
+  if (idle_images_ > kIdleProof) complete_through(awaiting_.size());
+}
+
+void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& motion, bool is_checkpoint) noexcept {
+  move_id_ = last_id_ = next_id(view.in.motion_status.move_id);
+  command_ = command;
+  arguments_ = motion.arguments;
+  use_variables_ = motion.use_variables;
+  armed_ = true;
+  flight_ = Flight{motion, is_checkpoint, 0, view.now};
+}
+
+void MoveSequencer::advance(const View& view, bool hold) noexcept {
+  if (flight_ || withdrawing_ || hold || !view.fresh || view.in.motion_status.fifo_space == 0) return;
+  if (checkpoint_due_) {
+    if (awaiting_.full()) return;
+    Motion checkpoint;
+    checkpoint.ticket = *checkpoint_due_;
+    checkpoint.arguments[0] = static_cast<float>(next_checkpoint_);
+    put(view, image::kSetCheckpoint, checkpoint, true);
+    flight_->checkpoint = next_checkpoint_;
+    next_checkpoint_ = next_checkpoint_ == kLastOwnCheckpoint ? kFirstOwnCheckpoint : next_checkpoint_ + 1;
+    checkpoint_due_.reset();
+    return;
+  }
+  if (queue_.empty()) return;
+  const Motion next = queue_.front();
+  queue_.pop();
+  put(view, next.ticket.motion_command_id, next, false);
+  ledger_.report(next.ticket, ReceiptState::kSent);
+}
+
+void MoveSequencer::discard_unsent(Reason reason) noexcept {
+  for (; !queue_.empty(); queue_.pop()) ledger_.report(queue_.front().ticket, ReceiptState::kDiscarded, reason);
+}
+
+void MoveSequencer::withdraw() noexcept {
+  flight_.reset();
+  armed_ = false;
+  withdrawing_ = true;
+  withdrawn_images_ = 0;
+}
+
+void MoveSequencer::end_all(ReceiptState sent, Reason reason, std::uint16_t robot_error) noexcept {
+  const Detail detail{.robot_error = robot_error};
+  for (; !awaiting_.empty(); awaiting_.pop()) ledger_.report(awaiting_.front().ticket, sent, reason, detail);
+  if (checkpoint_due_) ledger_.report(*checkpoint_due_, sent, reason, detail);
+  checkpoint_due_.reset();
+  if (flight_) {
+    ledger_.report(flight_->motion.ticket, sent, reason, detail);
+    withdraw();
+  }
+  for (; !queue_.empty(); queue_.pop()) {
+    ledger_.report(queue_.front().ticket, ReceiptState::kDiscarded, reason, detail);
+  }
+  armed_ = false;
+}
+
+void MoveSequencer::end_motion(Reason reason) noexcept {
+  for (; !awaiting_.empty(); awaiting_.pop()) {
+    ledger_.report(awaiting_.front().ticket, ReceiptState::kAborted, reason);
+  }
+  if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kAborted, reason);
+  checkpoint_due_.reset();
+  if (flight_ && needs_motors(flight_->motion.command_class)) {
+    ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, reason);
+    withdraw();
+  }
+  for (std::size_t left = queue_.size(); left > 0; --left) {
+    const Motion m = queue_.front();
+    queue_.pop();
+    if (needs_motors(m.command_class)) {
+      ledger_.report(m.ticket, ReceiptState::kDiscarded, reason);
+    } else {
+      queue_.push(m);
+    }
+  }
+}
+
+void MoveSequencer::link_lost() noexcept {
+  discard_unsent(Reason::kLinkLost);
+  armed_ = false;
+}
+
+void MoveSequencer::write(image::Outputs& out) const noexcept {
+  out.motion_control.move_id = move_id_;
+  out.motion_control.set_point = armed_;
+  out.motion_control.use_variables = use_variables_;
+  out.motion_command.command_id = command_;
+  out.motion_command.arguments = arguments_;
+}
+
+}  // namespace meca::control

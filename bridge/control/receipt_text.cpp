@@ -1,0 +1,239 @@
+#include "bridge/control/receipt_text.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "bridge/control/move_sequencer.hpp"
+#include "transports/image/error_codes.hpp"
+#include "transports/image/motion_commands.hpp"
+
+namespace meca::control {
+namespace {
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+std::string quoted(const ClientName& name) { return "'" + std::string(name.view()) + "'"; }
+
+std::string action_name(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::kTakeControl:
+      return "taking control";
+    case CommandKind::kReleaseControl:
+      return "releasing control";
+    case CommandKind::kActivate:
+      return "activation";
+    case CommandKind::kDeactivate:
+      return "deactivation";
+    case CommandKind::kHome:
+      return "homing";
+    case CommandKind::kResetError:
+      return "resetting the error";
+    case CommandKind::kPauseMotion:
+      return "pausing";
+    case CommandKind::kResumeMotion:
+      return "resuming";
+    case CommandKind::kClearMotion:
+      return "clearing the queue";
+    case CommandKind::kSimMode:
+      return "changing simulation mode";
+    case CommandKind::kRecoveryMode:
+      return "changing recovery mode";
+    case CommandKind::kBrakes:
+      return "brakes control";
+    case CommandKind::kDynamicData:
+      return "the dynamic data request";
+    case CommandKind::kSetHostTime:
+      return "setting the robot's clock";
+    case CommandKind::kMotion:
+      return "the motion command";
+  }
+  return "the command";
+}
+
+// "MoveJoints" or "activation"
+std::string subject(const Receipt& r) {
+  if (r.kind != CommandKind::kMotion) return action_name(r.kind);
+  const image::MotionCommandInfo* info = image::find_motion_command(r.motion_command_id);
+  return info ? std::string(info->name) : "motion command " + std::to_string(r.motion_command_id);
+}
+
+std::string error_text(std::uint16_t code) {
+  const image::ErrorInfo* info = image::find_error_code(code);
+  std::string text = "error " + std::to_string(code);
+  if (info) text += " (" + std::string(info->text) + ")";
+  return text;
+}
+
+struct ArgumentNames {
+  std::string name, unit;
+};
+
+ArgumentNames argument_names(const Receipt& r) {
+  const image::MotionCommandInfo* info =
+      r.kind == CommandKind::kMotion ? image::find_motion_command(r.motion_command_id) : nullptr;
+  if (info && r.argument < info->arguments.size()) {
+    return {std::string(info->arguments[r.argument].name), std::string(info->arguments[r.argument].unit)};
+  }
+  if (r.kind == CommandKind::kDynamicData) return {r.argument == 0 ? "slot" : "type", ""};
+  return {};
+}
+
+std::string bounds(const Receipt& r, const std::string& unit) {
+  const std::string tail = unit.empty() ? "" : " " + unit;
+  const bool low = r.minimum > -1e300, high = r.maximum < 1e300;
+  if (low && high && r.minimum == r.maximum) return "only " + number(r.minimum) + tail;
+  if (low && high) return number(r.minimum) + " to " + number(r.maximum) + tail;
+  if (low) return number(r.minimum) + tail + " or more";
+  if (high) return number(r.maximum) + tail + " or less";
+  return "any finite number";
+}
+
+std::string range_text(const Receipt& r) {
+  const auto [name, unit] = argument_names(r);
+  std::string text = "argument " + std::to_string(r.argument + 1);
+  if (!name.empty()) text += " (" + name + ")";
+  text += " is " + number(r.value);
+  if (!unit.empty()) text += " " + unit;
+  const bool joints = r.kind == CommandKind::kMotion && r.motion_command_id == image::kMoveJoints;
+  text += "; " + (joints ? "joint " + std::to_string(r.argument + 1) : subject(r)) + " allows " + bounds(r, unit);
+  if (r.motion_command_id == image::kSetCheckpoint && r.value >= kFirstOwnCheckpoint && r.value <= kLastOwnCheckpoint) {
+    text += " (the numbers above are the bridge's own)";
+  }
+  const image::MotionCommandInfo* info =
+      r.kind == CommandKind::kMotion ? image::find_motion_command(r.motion_command_id) : nullptr;
+  const bool whole = !info || (r.argument < info->arguments.size() && info->arguments[r.argument].integer);
+  if (whole) text += ", whole numbers";
+  return text;
+}
+
+std::string count_text(const Receipt& r) {
+  const auto plural = [](double n) { return number(n) + (n == 1 ? " argument" : " arguments"); };
+  std::string text = subject(r) + " got " + plural(r.value) + " and takes ";
+  if (r.minimum != r.maximum) return text + number(r.minimum) + " to " + plural(r.maximum);
+  return text + (r.maximum == 0 ? "none" : plural(r.maximum));
+}
+
+std::string unknown_text(const Receipt& r) {
+  if (r.kind != CommandKind::kMotion) return "there is no such kind of command";
+  const image::MotionCommandInfo* info = image::find_motion_command(r.motion_command_id);
+  if (!info) return "there is no motion command " + std::to_string(r.motion_command_id);
+  const std::string name(info->name);
+  if (info->command_class == image::CommandClass::kVelocity) {
+    return name + " is a velocity command: send it as a VelocityCommand stream";
+  }
+  if (info->command_class == image::CommandClass::kOtherRobots) {
+    return name + " is a command of other robots; a Meca500 does not have it";
+  }
+  return "this robot's firmware does not know " + name + " (or variables as its arguments)";
+}
+
+std::string not_owner_text(const Receipt& r) {
+  if (r.other.empty()) {
+    return quoted(r.client) + " lost control of the robot; take control again before commanding it";
+  }
+  return quoted(r.other) + " has control of the robot; wait until it releases control";
+}
+
+std::string not_allowed_text(const Receipt& r) {
+  if (r.maximum > 0) {
+    return "releasing the brakes lets the arm fall: hold the arm and send it again within " + number(r.maximum) +
+           " s (with a new command id)";
+  }
+  return "the configuration does not allow " + subject(r);
+}
+
+std::string time_out_text(const Receipt& r) {
+  if (r.kind == CommandKind::kMotion) {
+    return r.state == ReceiptState::kDiscarded ? "a command before it was not acknowledged by the robot in time"
+                                               : "the robot did not acknowledge or clear it in time; whether it took "
+                                                 "the command is not known";
+  }
+  return "the robot did not confirm " + subject(r) + " in time" +
+         (r.robot_error != 0 ? "; it shows " + error_text(r.robot_error) : "");
+}
+
+std::string reason_text(const Receipt& r) {
+  switch (r.reason) {
+    case Reason::kNone:
+      return {};
+    case Reason::kNotOwner:
+      return not_owner_text(r);
+    case Reason::kMonitoringOnly:
+      return "this bridge may only monitor this robot";
+    case Reason::kNoLink:
+      return "there is no link to the robot";
+    case Reason::kFirmwareUnknown:
+      return "the robot's firmware is not known yet, or not the one configured";
+    case Reason::kUnknownCommand:
+      return unknown_text(r);
+    case Reason::kArgumentCount:
+      return count_text(r);
+    case Reason::kArgumentRange:
+      return range_text(r);
+    case Reason::kNotActivated:
+      return "the robot is not activated";
+    case Reason::kNotHomed:
+      return "the robot is not homed";
+    case Reason::kWrongState:
+      return r.kind == CommandKind::kSetHostTime ? "the bridge's own clock is not set"
+                                                 : subject(r) + " is possible only while the robot is deactivated";
+    case Reason::kRobotError:
+      return "the robot is in " + error_text(r.robot_error) + "; reset it first";
+    case Reason::kSafetyStop:
+      return "a safety stop is active; remove its cause, then resume";
+    case Reason::kPaused:
+      return "motion is paused after a stop; resume it first";
+    case Reason::kQueueFull:
+      return "the bridge's queue is full; wait for receipts before sending more";
+    case Reason::kTimeOut:
+      return time_out_text(r);
+    case Reason::kLinkLost:
+      return r.state == ReceiptState::kDiscarded ? "the link to the robot was lost before it was executed"
+                                                 : "the link to the robot was lost; how far it got is not known";
+    case Reason::kOwnerLost:
+      return "its client lost or released control";
+    case Reason::kCleared:
+      return "the motion queue was cleared";
+    case Reason::kNotAllowed:
+      return not_allowed_text(r);
+    case Reason::kShutdown:
+      return "the bridge is shutting down";
+    case Reason::kDuplicate:
+      return "command id " + std::to_string(r.command_id) +
+             " was used before, for another command or too long ago to remember; ids count up";
+  }
+  return {};
+}
+
+std::string state_text(const Receipt& r) {
+  switch (r.state) {
+    case ReceiptState::kAccepted:
+      return subject(r) + " accepted";
+    case ReceiptState::kSent:
+      return subject(r) + " sent to the robot";
+    case ReceiptState::kAcknowledged:
+      return subject(r) + " taken by the robot";
+    case ReceiptState::kCompleted:
+      return subject(r) + " done";
+    case ReceiptState::kDiscarded:
+      return subject(r) + " discarded";
+    case ReceiptState::kRejected:
+      return subject(r) + " refused";
+    case ReceiptState::kAborted:
+      return subject(r) + " aborted";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string describe(const Receipt& receipt) {
+  const std::string reason = reason_text(receipt);
+  return reason.empty() ? state_text(receipt) : state_text(receipt) + ": " + reason;
+}
+
+}  // namespace meca::control
