@@ -19,10 +19,10 @@ struct Error : std::runtime_error {
 };
 
 struct ParticipantOptions {
-  int domain = 0;                        // 0..232
+  int domain = 0;  // 0..232
   std::string name = "meca";
-  std::vector<std::string> interfaces;   // IPv4 addresses to use; empty = all
-  bool shared_memory = true;             // false: UDP only (containers that do not share /dev/shm)
+  std::vector<std::string> interfaces;  // IPv4 addresses to use; empty = all
+  bool shared_memory = true;            // false: UDP only (containers that do not share /dev/shm)
 };
 
 enum class Reliability { kBestEffort, kReliable };
@@ -31,16 +31,16 @@ enum class Durability { kVolatile, kTransientLocal };
 struct Qos {
   Reliability reliability = Reliability::kReliable;
   Durability durability = Durability::kVolatile;
-  int depth = 1;                         // KEEP_LAST depth per instance; 0 = KEEP_ALL within max_samples
-  int max_samples = 0;                   // KEEP_ALL: at most so many per instance; 0 = unlimited
-  int max_instances = 0;                 // 0 = unlimited; a reader with a limit forgets dead instances first
-  std::chrono::nanoseconds lifespan{};   // writers: samples older than this are forgotten; 0 = never
+  int depth = 1;                        // KEEP_LAST depth per instance; 0 = KEEP_ALL within max_samples
+  int max_samples = 0;                  // KEEP_ALL: at most so many per instance; 0 = unlimited
+  int max_instances = 0;                // 0 = unlimited; a reader with a limit forgets dead instances first
+  std::chrono::nanoseconds lifespan{};  // writers: samples older than this are forgotten; 0 = never
 };
 
 struct SampleInfo {
-  bool valid_data = false;               // false: the sample only says that an instance or its writers are gone
+  bool valid_data = false;                  // false: the sample only says that an instance or its writers are gone
   std::array<std::byte, 12> participant{};  // GUID prefix of the writer's participant
-  std::int64_t source_time_ns = 0;       // Unix time of write()
+  std::int64_t source_time_ns = 0;          // Unix time of write()
 };
 
 class Participant;

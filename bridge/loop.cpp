@@ -1,1 +1,154 @@
-// Filled in by the next commits.
+#include "bridge/loop.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace meca::bridge {
+namespace {
+
+// The stop image is sent at least so often, and not much longer than this, before the good-bye.
+constexpr int kStopCyclesAtLeast = 3;
+constexpr Time kStopTime = std::chrono::milliseconds(50);
+
+Time to_time(const timespec& t) { return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec); }
+
+Time monotonic() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return to_time(t);
+}
+
+Stamp stamp() noexcept {
+  timespec wall{};
+  clock_gettime(CLOCK_REALTIME, &wall);
+  return {.now = monotonic(), .unix_ns = to_time(wall).count()};
+}
+
+void sleep_until(Time deadline) noexcept {
+  const timespec t{.tv_sec = static_cast<time_t>(deadline.count() / 1'000'000'000),
+                   .tv_nsec = static_cast<long>(deadline.count() % 1'000'000'000)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace
+
+BusGroup::BusGroup(std::vector<LoopBus> buses) {
+  for (auto& bus : buses) {
+    auto& ours = buses_.emplace_back();
+    ours.transport = std::move(bus.transport);
+    for (const auto& robot : bus.robots) ours.robots.emplace_back(robot);
+    ours.exchanges.resize(ours.robots.size());
+  }
+}
+
+void BusGroup::run(Stamp stamp, bool shutdown) noexcept {
+  for (auto& bus : buses_) {
+    bus.transport->exchange(stamp.now, bus.exchanges);
+    for (std::size_t i = 0; i < bus.robots.size(); ++i) step(bus.robots[i], bus.exchanges[i], stamp, shutdown);
+  }
+}
+
+std::size_t BusGroup::take_requests(Robot& robot, bool shutdown) noexcept {
+  std::size_t count = 0;
+  if (shutdown && !robot.told_to_stop) {
+    requests_[count++] = control::ShutdownRequest{};
+    robot.told_to_stop = true;
+  }
+  auto& channel = *robot.channel;
+  const std::size_t room = channel.receipts.capacity() - channel.receipts.size();
+  if (room < RobotChannel::kReceiptReserve) return count;
+  while (count < requests_.size()) {
+    const control::Request* request = channel.inbox.front();
+    if (request == nullptr) break;
+    requests_[count++] = *request;
+    channel.inbox.pop();
+  }
+  return count;
+}
+
+void BusGroup::step(Robot& robot, transports::Exchange& exchange, Stamp stamp, bool shutdown) noexcept {
+  const std::size_t requests = take_requests(robot, shutdown);
+  StepResult& result = *robot.result;
+  result.receipt_count = 0;
+  robot.cycle.step({requests_.data(), requests}, exchange, stamp, result);
+  auto& channel = *robot.channel;
+  if (!channel.records.push(result.record)) channel.records_dropped.fetch_add(1, std::memory_order_relaxed);
+  for (std::size_t i = 0; i < result.receipt_count; ++i) {
+    if (channel.receipts.push({result.receipts[i], result.record.cycle, stamp.unix_ns})) continue;
+    channel.receipts_lost.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void BusGroup::close(Stamp stamp) noexcept {
+  for (auto& bus : buses_) {
+    bus.transport->close();
+    for (auto& robot : bus.robots) {
+      CycleRecord& record = robot.result->record;
+      ++record.cycle;
+      record.quality = Quality::kDisconnected;
+      record.link = transports::LinkState::kDown;
+      record.link_detail = "the bridge has stopped";
+      if (record.control.owned) {
+        record.control.owned = false;
+        record.control.last_owner = record.control.owner;
+        record.control.owner = {};
+        record.control.last_loss = control::ControlState::Loss::kShutdown;
+        record.control.since_unix_ns = stamp.unix_ns;
+      }
+      if (!robot.channel->records.push(record)) robot.channel->records_dropped.fetch_add(1, std::memory_order_relaxed);
+    }
+  }
+}
+
+Loop::Loop(std::vector<LoopBus> buses, Time cycle, const RealtimeConfig& realtime, Wakeup& wakeup)
+    : group_(std::move(buses)), cycle_(cycle), realtime_(realtime), wakeup_(wakeup) {}
+
+Loop::~Loop() {
+  request_stop();
+  join();
+}
+
+std::vector<std::string> Loop::start() {
+  std::promise<std::vector<std::string>> ready;
+  auto got = ready.get_future();
+  thread_ = std::thread([this, promise = std::move(ready)]() mutable { run(std::move(promise)); });
+  return got.get();
+}
+
+void Loop::join() {
+  if (thread_.joinable()) thread_.join();
+}
+
+PaceFacts Loop::pace() const noexcept {
+  return {missed_cycles_.load(std::memory_order_relaxed), lateness_max_us_.load(std::memory_order_relaxed),
+          lateness_mean_us_.load(std::memory_order_relaxed)};
+}
+
+void Loop::share_pace(const PaceFacts& facts) noexcept {
+  missed_cycles_.store(facts.missed_cycles, std::memory_order_relaxed);
+  lateness_max_us_.store(facts.lateness_max_us, std::memory_order_relaxed);
+  lateness_mean_us_.store(facts.lateness_mean_us, std::memory_order_relaxed);
+}
+
+void Loop::run(std::promise<std::vector<std::string>> ready) {
+  ready.set_value(make_thread_realtime(realtime_));
+  Pacer pacer(cycle_, monotonic() + cycle_);
+  const auto stop_cycles = std::max<std::int64_t>(kStopCyclesAtLeast, kStopTime / cycle_);
+  for (std::int64_t stopping = 0; stopping < stop_cycles;) {
+    sleep_until(pacer.deadline());
+    pacer.woke(monotonic());
+    const bool shutdown = stop_requested_.load();
+    stopping += shutdown;
+    group_.run(stamp(), shutdown);
+    wakeup_.notify();
+    pacer.done(monotonic());
+    share_pace(pacer.facts());
+  }
+  group_.close(stamp());
+  wakeup_.notify();
+}
+
+}  // namespace meca::bridge

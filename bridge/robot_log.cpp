@@ -1,0 +1,134 @@
+#include "bridge/robot_log.hpp"
+
+#include <utility>
+
+#include "bridge/mapping.hpp"
+#include "transports/image/error_codes.hpp"
+
+namespace meca::bridge {
+namespace {
+
+using Level = LogLine::Level;
+using transports::LinkState;
+
+// The safety stops the Meca500 has.
+bool any_stop(const image::SafetyStatus& safety) {
+  return safety.known &&
+         (safety.stop.e_stop || safety.stop.p_stop2 || safety.stop.reboot || safety.stop.connection_dropped);
+}
+
+std::string error_sentence(std::uint16_t code) {
+  const auto* info = image::find_error_code(code);
+  const std::string number = "error " + std::to_string(code);
+  if (info == nullptr) return number + ", which no document names";
+  return number + " " + std::string(info->name) + ": " + std::string(info->text) + "; " + std::string(info->remedy);
+}
+
+}  // namespace
+
+void RobotLog::say(Event event, Level level, std::string text, Time now, std::vector<LogLine>& lines) {
+  Quiet& quiet = quiet_[event];
+  if (quiet.said && now < quiet.until) {
+    ++quiet.kept_back;
+    return;
+  }
+  text = robot_ + ": " + text;
+  if (quiet.kept_back > 0) text += " (" + std::to_string(quiet.kept_back) + " more of this kind since the last line)";
+  quiet = {true, now + kQuiet, 0};
+  lines.push_back({level, std::move(text)});
+}
+
+void RobotLog::look(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
+  look_at_link(record, now, lines);
+  look_at_owner(record.control, now, lines);
+  look_at_trouble(record, now, lines);
+}
+
+void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
+  if (record.link != link_ || (!link_told_down_ && record.link != LinkState::kUp)) {
+    const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail);
+    if (record.link == LinkState::kUp) {
+      say(kLink, Level::kInfo, "link up", now, lines);
+      link_was_up_ = true;
+    } else if (link_ == LinkState::kUp) {
+      say(kLink, Level::kWarning, "link down" + detail, now, lines);
+    } else if (!link_told_down_) {
+      say(kLink, Level::kInfo, "no link yet" + detail, now, lines);
+      quiet_[kLink] = {};  // the first "link up" is news
+    }
+    link_told_down_ = true;
+    link_ = record.link;
+  }
+  if (record.firmware_known && !firmware_known_) {
+    say(kFirmware, Level::kInfo, "firmware " + to_string(record.firmware), now, lines);
+  }
+  firmware_known_ = record.firmware_known;
+  if (record.firmware_mismatch && !firmware_mismatch_) {
+    say(kFirmware, Level::kError,
+        "the robot reports firmware " + to_string(record.firmware) +
+            ", the configuration says another generation; correct `firmware:` or use `auto`",
+        now, lines);
+  }
+  firmware_mismatch_ = record.firmware_mismatch;
+}
+
+void RobotLog::look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines) {
+  if (state.owned == owned_ && state.owner == owner_) return;
+  using Loss = control::ControlState::Loss;
+  if (state.owned) {
+    say(kOwner, Level::kInfo, std::string(state.owner.view()) + " has control", now, lines);
+  } else {
+    const std::string who(owner_.view());
+    switch (state.last_loss) {
+      case Loss::kNone:
+      case Loss::kReleased:
+        say(kOwner, Level::kInfo, who + " released control", now, lines);
+        break;
+      case Loss::kLeaseExpired:
+        say(kOwner, Level::kWarning,
+            who + " lost control: its lease was not renewed for " + std::to_string(state.lease_ms) + " ms", now, lines);
+        break;
+      case Loss::kLinkLost:
+        say(kOwner, Level::kWarning, who + " lost control: the link to the robot is gone", now, lines);
+        break;
+      case Loss::kShutdown:
+        say(kOwner, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
+        break;
+    }
+  }
+  owned_ = state.owned;
+  owner_ = state.owner;
+}
+
+void RobotLog::look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
+  if (record.quality != Quality::kGood) return;  // old values are no news
+  const std::uint16_t code = record.inputs.robot_status.error_code;
+  if (code != error_code_) {
+    if (code != 0) say(kError, Level::kError, error_sentence(code), now, lines);
+    if (code == 0) say(kError, Level::kInfo, "the error is gone", now, lines);
+    error_code_ = code;
+  }
+  const bool stopped = any_stop(record.inputs.safety_status);
+  if (stopped != stopped_) {
+    if (stopped) say(kSafety, Level::kWarning, "a safety stop is active; SafetyStatus says which", now, lines);
+    if (!stopped) say(kSafety, Level::kInfo, "no safety stop any more", now, lines);
+    stopped_ = stopped;
+  }
+}
+
+void RobotLog::look(const LogFacts& facts, Time now, std::vector<LogLine>& lines) {
+  const auto compare = [&](Event event, std::uint64_t LogFacts::*counter, Level level, const char* what) {
+    const std::uint64_t news = facts.*counter - facts_.*counter;
+    if (news == 0) return;
+    say(event, level, std::to_string(news) + what + ", " + std::to_string(facts.*counter) + " since the start", now,
+        lines);
+  };
+  compare(kMissed, &LogFacts::missed_cycles, Level::kWarning, " cycles missed: the machine woke the loop too late");
+  compare(kDropped, &LogFacts::records_dropped, Level::kWarning,
+          " state records dropped: the publisher came too late for them");
+  compare(kLost, &LogFacts::receipts_lost, Level::kError, " receipts lost");
+  compare(kRefused, &LogFacts::refused_writes, Level::kWarning, " samples refused by DDS");
+  facts_ = facts;
+}
+
+}  // namespace meca::bridge

@@ -1,0 +1,61 @@
+// What is worth a line in the log about one robot: the first time a sentence, afterwards a number. A machine without
+// output: records come in, lines go out; the publisher thread prints them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridge/cycle.hpp"
+
+namespace meca::bridge {
+
+struct LogLine {
+  enum class Level : std::uint8_t { kInfo, kWarning, kError } level = Level::kInfo;
+  std::string text;
+};
+
+// Counters of the robot's threads, as of now.
+struct LogFacts {
+  std::uint64_t missed_cycles = 0, records_dropped = 0, receipts_lost = 0, refused_writes = 0;
+};
+
+class RobotLog {
+ public:
+  // The same event again within this time is only counted, and told with the next line.
+  static constexpr Time kQuiet = std::chrono::seconds(10);
+
+  explicit RobotLog(std::string robot) : robot_(std::move(robot)) {}
+
+  // The lines that this record is worth, in `lines` (appended). `now` is any monotonic time.
+  void look(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
+  // Counters that should stay 0; called now and then.
+  void look(const LogFacts& facts, Time now, std::vector<LogLine>& lines);
+
+ private:
+  enum Event { kLink, kFirmware, kOwner, kError, kSafety, kMissed, kDropped, kLost, kRefused, kEvents };
+  struct Quiet {
+    bool said = false;
+    Time until{};
+    std::uint64_t kept_back = 0;
+  };
+  void say(Event event, LogLine::Level level, std::string text, Time now, std::vector<LogLine>& lines);
+  void look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
+  void look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines);
+  void look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
+
+  std::string robot_;
+  std::array<Quiet, kEvents> quiet_;
+  transports::LinkState link_ = transports::LinkState::kDown;
+  bool link_was_up_ = false;
+  bool link_told_down_ = false;
+  bool firmware_known_ = false, firmware_mismatch_ = false;
+  std::uint16_t error_code_ = 0;
+  bool stopped_ = false;
+  bool owned_ = false;
+  control::ClientName owner_;
+  LogFacts facts_;
+};
+
+}  // namespace meca::bridge
