@@ -9,12 +9,6 @@
 namespace meca::bridge {
 namespace {
 
-// Bounded IDL strings are arrays: assigning never allocates, and cuts what is too long.
-template <typename String>
-void assign(String& to, std::string_view text) {
-  to.assign(text.data(), text.size());
-}
-
 template <typename Sample>
 void fill_pose(const image::Pose& pose, Sample& sample) {
   sample.x(pose.x);
@@ -41,7 +35,7 @@ void fill_stops(const image::StopSignals& stops, meca500::StopSignals& sample) {
 
 template <typename Sample>
 void set_common(Sample& sample, std::string_view robot, const meca500::Header& header) {
-  assign(sample.robot(), robot);
+  set_text(sample.robot(), robot);
   sample.header(header);
 }
 
@@ -233,19 +227,19 @@ void fill(const image::DynamicData& data, std::uint8_t slot, image::Layout layou
   sample.type_id(data.type_id);
   sample.raw(data.values);
   const auto* info = image::find_dynamic_data_type(data.type_id, layout);
-  assign(sample.type_name(), info != nullptr ? info->name : std::string_view{});
+  set_text(sample.type_name(), info != nullptr ? info->name : std::string_view{});
   auto& values = sample.values();
   values.resize(info != nullptr ? std::min(info->values.size(), data.values.size()) : 0);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    assign(values[i].name(), info->values[i].name);
-    assign(values[i].unit(), info->values[i].unit);
+    set_text(values[i].name(), info->values[i].name);
+    set_text(values[i].unit(), info->values[i].unit);
     values[i].value(image::dynamic_value(info->values[i], data.values[i]));
   }
 }
 
 void fill(std::string_view robot, const CycleRecord& record, meca500::CyclicState& sample) {
   const auto& inputs = record.inputs;
-  assign(sample.robot(), robot);
+  set_text(sample.robot(), robot);
   fill_header(record, sample.header());
   const auto section = [&](const auto& from, auto& to) {
     set_common(to, robot, sample.header());
@@ -269,34 +263,34 @@ void fill(std::string_view robot, const CycleRecord& record, meca500::CyclicStat
 
 void fill(const control::ControlState& state, meca500::ControlStatus& sample) {
   sample.owned(state.owned);
-  assign(sample.owner(), state.owner);
-  assign(sample.owner_participant(), state.owned ? to_string(state.owner_participant) : std::string{});
+  set_text(sample.owner(), state.owner);
+  set_text(sample.owner_participant(), state.owned ? to_string(state.owner_participant) : std::string{});
   sample.since_ns(state.since_unix_ns);
   sample.lease_ms(state.lease_ms);
   sample.on_loss(to_idl(state.on_loss));
   sample.monitoring_only(state.monitoring_only);
   const bool refused = !state.last_refusal.client.empty();
-  assign(sample.last_refused(), state.last_refusal.client);
-  assign(sample.last_refusal(), refused ? control::describe(state.last_refusal) : std::string{});
-  assign(sample.last_owner(), state.last_owner);
-  assign(sample.last_loss(), loss_name(state.last_loss));
+  set_text(sample.last_refused(), state.last_refusal.client);
+  set_text(sample.last_refusal(), refused ? control::describe(state.last_refusal) : std::string{});
+  set_text(sample.last_owner(), state.last_owner);
+  set_text(sample.last_loss(), loss_name(state.last_loss));
 }
 
 void fill(const CycleRecord& record, const Diagnosis& diagnosis, const StatusFacts& facts,
           meca500::BridgeStatus& sample) {
   sample.time_ns(facts.unix_ns);
-  assign(sample.bridge_version(), MECA_VERSION);
-  assign(sample.transport(), facts.transport);
+  set_text(sample.bridge_version(), MECA_VERSION);
+  set_text(sample.transport(), facts.transport);
   sample.link(to_idl(record.link));
-  assign(sample.link_detail(), record.link_detail);
+  set_text(sample.link_detail(), record.link_detail);
   sample.firmware_known(record.firmware_known);
-  assign(sample.firmware(), record.firmware_known ? to_string(record.firmware) : std::string{});
-  assign(sample.layout(), record.firmware_known ? layout_name(record.layout) : std::string_view{});
-  assign(sample.product(), product_name(record.product_type));
+  set_text(sample.firmware(), record.firmware_known ? to_string(record.firmware) : std::string{});
+  set_text(sample.layout(), record.firmware_known ? layout_name(record.layout) : std::string_view{});
+  set_text(sample.product(), product_name(record.product_type));
   sample.serial_number(record.serial_number);
   sample.ready(diagnosis.ready);
-  assign(sample.cause(), diagnosis.cause);
-  assign(sample.remedy(), diagnosis.remedy);
+  set_text(sample.cause(), diagnosis.cause);
+  set_text(sample.remedy(), diagnosis.remedy);
   sample.cycle_us(static_cast<std::uint32_t>(facts.cycle.count() / 1000));
   sample.cycles(record.cycle);
   sample.missed_cycles(facts.missed_cycles);

@@ -2,6 +2,8 @@
 // They fill samples that are used again and again, so that publishing a section allocates nothing.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -13,6 +15,18 @@
 #include "transports/image/image.hpp"
 
 namespace meca::bridge {
+
+// Bounded IDL strings are arrays: setting one never allocates, and cuts what is too long. Not their assign(), which
+// leaves the end of a longer text before in place.
+template <typename String>
+void set_text(String& to, std::string_view text) {
+  constexpr std::size_t kLongest = 255;  // of all IDL strings
+  std::array<char, kLongest + 1> terminated;
+  const std::size_t size = std::min(text.size(), kLongest);
+  std::copy_n(text.data(), size, terminated.data());
+  terminated[size] = '\0';
+  to = terminated.data();
+}
 
 // ---------------------------------------------------------------- bridge -> DDS: the key `robot` is the caller's
 

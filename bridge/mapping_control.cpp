@@ -52,17 +52,12 @@ constexpr const char* kBadClient = "the client name is empty or has control char
 
 void fill(std::string_view robot, const control::Receipt& receipt, std::string_view text, std::uint64_t cycle,
           std::int64_t unix_ns, meca500::CommandReceipt& sample) {
-  sample.robot().assign(robot.data(), robot.size());
-  sample.client().assign(receipt.client.view().data(), receipt.client.view().size());
+  set_text(sample.robot(), robot);
+  set_text(sample.client(), receipt.client);
   sample.command_id(receipt.command_id);
   sample.state(static_cast<meca500::ReceiptState>(receipt.state));
   sample.reason(static_cast<meca500::ReceiptReason>(receipt.reason));
-  if (text.empty()) {
-    const std::string sentence = control::describe(receipt);
-    sample.text().assign(sentence.data(), sentence.size());
-  } else {
-    sample.text().assign(text.data(), text.size());
-  }
+  set_text(sample.text(), text.empty() ? control::describe(receipt) : std::string(text));
   sample.robot_error_code(receipt.robot_error);
   sample.cycle(cycle);
   sample.time_ns(unix_ns);

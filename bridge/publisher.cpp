@@ -23,7 +23,8 @@ Publisher::Publisher(Topics& topics, std::vector<PublishedRobot> robots, SpscQue
   for (auto& robot : robots) {
     RobotPublisher publisher(robot.channel->name, robot.cycle, topics);
     RobotLog robot_log(robot.channel->name);
-    robots_.push_back(std::make_unique<Robot>(Robot{std::move(robot), std::move(publisher), std::move(robot_log), {}}));
+    robots_.push_back(
+        std::make_unique<Robot>(Robot{std::move(robot), std::move(publisher), std::move(robot_log), {}, 0}));
   }
 }
 
@@ -84,7 +85,7 @@ void Publisher::drain_receipts(Robot& robot) {
   auto& channel = *robot.facts.channel;
   while (const ReceiptEvent* event = channel.receipts.front()) {
     fill(channel.name, event->receipt, {}, event->cycle, event->unix_ns, receipt_);
-    if (topics_.command_receipt.writer) topics_.command_receipt.writer.write(receipt_);
+    robot.refused_receipts += !topics_.command_receipt.writer.write(receipt_);
     channel.receipts.pop();
   }
 }
@@ -93,7 +94,7 @@ void Publisher::drain_reader_events() {
   while (const ReaderEvent* event = reader_events_.front()) {
     if (event->has_receipt) {
       fill(event->robot, event->receipt, event->text, 0, event->unix_ns, receipt_);
-      if (topics_.command_receipt.writer) topics_.command_receipt.writer.write(receipt_);
+      topics_.command_receipt.writer.write(receipt_);
     }
     if (!event->log_line.empty()) {
       lines_.push_back({LogLine::Level::kWarning, std::string(event->log_line.view())});
@@ -109,7 +110,7 @@ void Publisher::look_at_counters(Robot& robot, Time now) {
   robot.log.look(LogFacts{.missed_cycles = robot.facts.pace().missed_cycles,
                           .records_dropped = channel.records_dropped.load(std::memory_order_relaxed),
                           .receipts_lost = channel.receipts_lost.load(std::memory_order_relaxed),
-                          .refused_writes = robot.publisher.refused_writes()},
+                          .refused_writes = robot.publisher.refused_writes() + robot.refused_receipts},
                  now, lines_);
 }
 

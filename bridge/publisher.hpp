@@ -48,6 +48,7 @@ class Publisher {
     RobotPublisher publisher;
     RobotLog log;
     Time next_look{};  // at the counters
+    std::uint64_t refused_receipts = 0;
   };
   void run();
   void drain_records(Robot& robot, Time now, std::int64_t unix_ns);

@@ -60,7 +60,7 @@ Topics::Topics(dds::Participant& p, const DdsConfig& c) {
 
 RobotPublisher::RobotPublisher(std::string_view robot, Time cycle, Topics& topics)
     : topics_(topics), robot_(robot), cycle_(cycle) {
-  const auto name = [&](auto&... samples) { (samples.robot().assign(robot.data(), robot.size()), ...); };
+  const auto name = [&](auto&... samples) { (set_text(samples.robot(), robot), ...); };
   name(robot_status_.sample, motion_status_.sample, target_joint_set_.sample, target_end_effector_pose_.sample,
        target_configuration_.sample, target_wrf_.sample, target_trf_.sample, robot_timestamp_.sample,
        safety_status_.sample, robot_control_.sample, motion_control_.sample, motion_command_.sample, host_time_.sample,
