@@ -70,11 +70,11 @@ Verdict examine(const Command& command, bool use_variables, const Readiness& r) 
       if (!r.off) return {error::kMustBeDeactivated};
       break;
     case kQueued:
-      if (!r.ready) return {error::kNotActivated};
+      if (!r.activated) return {error::kNotActivated};
       break;
     case kMotion:
     case kVelocity:
-      if (!r.ready) return {error::kNotActivated};
+      if (!r.activated) return {error::kNotActivated};
       // Recovery mode moves slowly without homing (spec 5.6).
       if (!r.homed && !r.recovery_mode) return {error::kNotHomed};
       break;

@@ -12,7 +12,7 @@ namespace meca::sim {
 struct Readiness {
   Product product;
   image::Layout layout;
-  bool off, ready, homed, recovery_mode;
+  bool off, activated, homed, recovery_mode;
 };
 
 struct Verdict {

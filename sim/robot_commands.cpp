@@ -6,7 +6,7 @@
 namespace meca::sim {
 
 void Robot::State::fail(std::uint16_t code) noexcept {
-  if (error != error::kNone) return;  // the first cause stays
+  if (code == error::kNone || error != error::kNone) return;  // the first cause stays
   error = code;
   paused = true;  // ResetError leaves the robot paused (manual, ResetError)
   cleared = true;
@@ -114,7 +114,7 @@ void Robot::State::receive(const Command& command, bool use_variables, bool cycl
   if (error != error::kNone) return refuse(command, error::kAlreadyInError, cyclic);
   const Verdict verdict =
       examine(command, use_variables,
-              {options.product, options.layout, power.off(), power.ready(), power.homed(), recovery_mode});
+              {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode});
   if (verdict.code != error::kNone) {
     refuse(command, verdict.code, cyclic);
     return fail(verdict.code);

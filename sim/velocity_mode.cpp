@@ -34,6 +34,13 @@ void brake_before_limits(Joints& v, const Joints& q, const JointLimits& limits, 
   scale(v, k);
 }
 
+// The stretched (or folded) elbow is a singularity that a line cannot cross: it would have to come back from there.
+bool would_stretch(const Joints& q, const Joints& v, double seconds) noexcept {
+  const Joints next{q[0], q[1], q[2] + v[2] * seconds, q[3], q[4], q[5]};
+  const int now = posture(q).elbow;
+  return now != 0 && posture(next).elbow != now;
+}
+
 }  // namespace
 
 void VelocityMode::command(const Command& command) noexcept {
@@ -84,6 +91,8 @@ void VelocityMode::step(double seconds, const Settings& settings, const JointLim
   }
   for (std::size_t i = 0; i < 6; ++i) velocity_[i] += k * (target[i] - velocity_[i]);
   brake_before_limits(velocity_, joints, limits, slope, seconds);
+
+  if (command_.id != image::kMoveJointsVel && would_stretch(joints, velocity_, seconds)) velocity_ = {};
 
   moving_ = false;
   for (std::size_t i = 0; i < 6; ++i) {

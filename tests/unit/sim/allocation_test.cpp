@@ -1,0 +1,78 @@
+// A step of the robot belongs on the cycle thread: it must not allocate.
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/unit/sim/rig.hpp"
+#include "transports/builtin/builtin.hpp"
+
+namespace {
+std::atomic<std::uint64_t> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size != 0 ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+// Replaces the global ones for this test program; the array and nothrow forms end here too.
+void* operator new(std::size_t size) { return counted(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace meca::sim {
+namespace {
+
+TEST(Allocation, IsCountedByThisProgram) {
+  const auto before = allocations.load();
+  delete new int(1);
+  EXPECT_GT(allocations.load(), before);
+}
+
+TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
+  Rig rig(RobotOptions{});
+  std::uint64_t while_stepping = 0;
+  const auto steps = [&](int count) {
+    const auto before = allocations.load();
+    for (int i = 0; i < count; ++i) rig.robot.step(rig.out, std::chrono::milliseconds(1));
+    while_stepping += allocations.load() - before;
+  };
+  const auto command = [&](std::uint32_t id, std::array<float, 6> arguments) {
+    ++rig.out.motion_control.move_id;
+    rig.out.motion_command = {id, arguments};
+    steps(700);
+  };
+  rig.out.robot_control.activate = rig.out.robot_control.home = true;
+  steps(7000);
+  ASSERT_TRUE(rig.robot.inputs().robot_status.homed);
+  rig.out.motion_control.set_point = true;
+  command(image::kMoveJoints, {10, 20, 10, 5, 30, 400});
+  command(image::kMoveLinRelWrf, {-10, 5, 5, 3, 2, 1});
+  command(image::kMovePose, {150, 50, 250, 0, 90, 0});
+  command(image::kMoveLinVelTrf, {1, 2, 3, 0, 0, 0});
+  command(image::kMoveLin, {900, 0, 0, 0, 0, 0});  // out of reach
+  EXPECT_NE(rig.robot.inputs().robot_status.error_code, 0);
+  rig.out.robot_control.reset_error = true;
+  steps(10);
+  for (int i = 0; i < 13100; ++i) {  // more than the queue and the journal hold
+    ++rig.out.motion_control.move_id;
+    rig.out.motion_command = {image::kSetCheckpoint, {1}};
+    steps(1);
+  }
+  rig.out.motion_control.clear_motion = true;
+  steps(10);
+  EXPECT_EQ(while_stepping, 0u);
+}
+
+TEST(Allocation, NeverHappensInAnExchangeOfTheBuiltInTransport) {
+  const auto bus = transports::make_builtin({RobotOptions{}, RobotOptions{}});
+  bus->open(Time(0));
+  std::array<transports::Exchange, 2> exchanges{};
+  const auto before = allocations.load();
+  for (int i = 1; i < 1000; ++i) bus->exchange(i * std::chrono::milliseconds(1), exchanges);
+  EXPECT_EQ(allocations.load(), before);
+}
+
+}  // namespace
+}  // namespace meca::sim
