@@ -41,7 +41,7 @@ TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
   const auto command = [&](std::uint32_t id, std::array<float, 6> arguments) {
     ++rig.out.motion_control.move_id;
     rig.out.motion_command = {id, arguments};
-    steps(700);
+    steps(5000);
   };
   rig.out.robot_control.activate = rig.out.robot_control.home = true;
   steps(7000);

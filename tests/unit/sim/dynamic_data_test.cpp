@@ -155,6 +155,7 @@ TEST(AutomaticSlots, ShowEveryTypeTheRobotHasInOneRoundAndCountIt) {
   for (const Layout layout : {Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11}) {
     Rig rig(Rig::quick(layout));
     std::set<std::uint32_t> seen;
+    for (const auto& slot : rig.robot.inputs().dynamic_data) seen.insert(slot.type_id);
     while (rig.robot.inputs().robot_timestamp.dynamic_data_update_count == 0) {
       for (const auto& slot : rig.step().dynamic_data) seen.insert(slot.type_id);
       ASSERT_LT(seen.size(), 64u);
@@ -181,10 +182,15 @@ TEST(AutomaticSlots, ShowAChangedSettingWithinAFewCycles) {
   rig.make_ready();
   rig.run(200ms);
   rig.send(image::kSetBlending, {33});
-  int cycles = 0;
-  for (bool shown = false; !shown; ++cycles) {
+  const auto shown = [&] {
+    for (const auto& slot : rig.robot.inputs().dynamic_data) {
+      if (slot.type_id == 21 && slot.values[0] == 33) return true;
+    }
+    return false;
+  };
+  for (int cycles = 1; !shown(); ++cycles) {
     ASSERT_LT(cycles, 5);  // the manual says 3 to 5 typically
-    for (const auto& slot : rig.step().dynamic_data) shown = shown || (slot.type_id == 21 && slot.values[0] == 33);
+    rig.step();
   }
 }
 
