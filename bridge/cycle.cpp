@@ -110,12 +110,13 @@ void Cycle::step(std::span<const control::Request> requests, transports::Exchang
   s.receive(exchange, stamp);
 
   const control::View view{s.inputs, s.firmware.layout(), s.fresh, stamp.now, stamp.unix_ns};
-  const control::LinkFacts link{.usable = s.usable(exchange, stamp),
+  const control::LinkFacts link{.up = exchange.link == LinkState::kUp,
+                                .usable = s.usable(exchange, stamp),
                                 .firmware_known = s.firmware.known() && !s.firmware.mismatch()};
   s.controller.step(requests, view, link);
 
   exchange.output_valid = s.controller.may_command();
-  s.outputs = exchange.output_valid ? s.controller.outputs() : image::Outputs{};
+  s.outputs = s.controller.outputs();
   auto& slots = s.outputs.dynamic_data_configuration.type_ids;
   slots = s.firmware.slots(s.controller.dynamic_data());
   image::encode_outputs(s.outputs, {s.firmware.layout(), s.settings.byte_order}, exchange.output);

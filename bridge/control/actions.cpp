@@ -10,13 +10,6 @@ using image::Layout;
 constexpr Time kAskTwiceWithin = std::chrono::seconds(5);
 // not published: how soon after a deactivation the drives take an activation; a short rest costs nobody anything.
 constexpr Time kReactivationRest = std::chrono::milliseconds(100);
-// Dynamic data follows 1-2 cycles after the request (spec 5.7); a type the robot does not have never comes.
-constexpr Time kDynamicDataTimeout = std::chrono::seconds(3);
-
-bool motion_events(const image::Inputs& in) noexcept {
-  return safety_stop(in) || in.robot_status.collision_status || in.robot_status.work_zone_status;
-}
-
 }  // namespace
 
 Actions::Actions(Ledger& ledger, const Settings& settings) noexcept
@@ -84,121 +77,6 @@ std::optional<Refusal> Actions::check(const CommandRequest& request, const Ticke
   return std::nullopt;
 }
 
-std::optional<Refusal> Actions::check_start(const Action& a, const View& view) const noexcept {
-  const image::RobotStatus& s = view.in.robot_status;
-  const auto error = [&s]() { return Refusal{Reason::kRobotError, {.robot_error = s.error_code}}; };
-  switch (a.ticket.kind) {
-    case CommandKind::kActivate:
-      if (s.activated) return std::nullopt;
-      if (s.error_code != 0) return error();
-      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
-      return std::nullopt;
-    case CommandKind::kHome:
-      if (!s.activated) return Refusal{Reason::kNotActivated};
-      if (s.homed) return std::nullopt;
-      if (s.error_code != 0) return error();
-      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
-      return std::nullopt;
-    case CommandKind::kResumeMotion:
-      if (s.error_code != 0) return error();
-      if (!s.activated) return Refusal{Reason::kNotActivated};
-      if (unresettable_stop(view.in, view.layout)) return Refusal{Reason::kSafetyStop};
-      return std::nullopt;
-    case CommandKind::kPauseMotion:
-      if (!s.activated && !view.in.motion_status.paused) return Refusal{Reason::kNotActivated};
-      return std::nullopt;
-    case CommandKind::kSimMode:
-      if (s.sim_activated == a.wanted) return std::nullopt;
-      if (s.activated || s.busy) return Refusal{Reason::kWrongState};
-      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
-      return std::nullopt;
-    case CommandKind::kBrakes:
-      if (!settings_.allow_brakes) return Refusal{Reason::kNotAllowed};
-      if (s.activated || s.busy) return Refusal{Reason::kWrongState};
-      return std::nullopt;
-    case CommandKind::kSetHostTime:
-      if (view.unix_ns <= 0) return Refusal{Reason::kWrongState};
-      return std::nullopt;
-    case CommandKind::kDeactivate:
-    case CommandKind::kResetError:
-    case CommandKind::kClearMotion:
-    case CommandKind::kRecoveryMode:
-    case CommandKind::kDynamicData:
-    case CommandKind::kTakeControl:
-    case CommandKind::kReleaseControl:
-    case CommandKind::kMotion:
-      return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-// The status bit that answers the action.
-bool Actions::confirmed(const Action& a, const View& view) const noexcept {
-  const image::RobotStatus& s = view.in.robot_status;
-  const image::MotionStatus& m = view.in.motion_status;
-  switch (a.ticket.kind) {
-    case CommandKind::kActivate:
-      return s.activated;
-    case CommandKind::kDeactivate:
-      return !s.activated && !s.busy;
-    case CommandKind::kHome:
-      return s.homed && s.activated;
-    case CommandKind::kResetError:
-      return s.error_code == 0;
-    case CommandKind::kPauseMotion:
-      return m.paused;
-    case CommandKind::kResumeMotion:
-      return !m.paused;
-    case CommandKind::kClearMotion:
-      return m.cleared;
-    case CommandKind::kSimMode:
-      return s.sim_activated == a.wanted;
-    case CommandKind::kRecoveryMode:
-      return s.recovery_mode == a.wanted;
-    case CommandKind::kBrakes:
-      return s.brakes_engaged == a.wanted;
-    case CommandKind::kDynamicData:
-      return a.type == 0 || view.in.dynamic_data[a.slot].type_id == a.type;
-    case CommandKind::kSetHostTime:
-      return true;  // not published: nothing confirms it; three images long is enough
-    case CommandKind::kTakeControl:
-    case CommandKind::kReleaseControl:
-    case CommandKind::kMotion:
-      return true;
-  }
-  return true;
-}
-
-bool Actions::already_done(const Action& a, const View& view, bool nothing_queued) const noexcept {
-  if (!confirmed(a, view)) return false;
-  switch (a.ticket.kind) {
-    case CommandKind::kPauseMotion:
-      return pause_ || view.layout != Layout::kFirmware9;
-    case CommandKind::kResumeMotion:
-      return !pause_ && !motion_events(view.in);
-    case CommandKind::kClearMotion:
-      return nothing_queued;
-    case CommandKind::kDeactivate:
-      return !running(CommandKind::kActivate);
-    case CommandKind::kBrakes:
-      return a.wanted != brakes_gate_;  // engaged: the gate is closed; released: it is open
-    case CommandKind::kDynamicData:
-      return dynamic_data_[a.slot] == a.type;
-    case CommandKind::kSetHostTime:
-      return false;
-    case CommandKind::kActivate:
-    case CommandKind::kHome:
-    case CommandKind::kResetError:
-    case CommandKind::kSimMode:
-    case CommandKind::kRecoveryMode:
-    case CommandKind::kTakeControl:
-    case CommandKind::kReleaseControl:
-    case CommandKind::kMotion:
-      return true;
-  }
-  return true;
-}
-
 void Actions::accept(const CommandRequest& request, const Ticket& ticket, const View& view,
                      bool nothing_queued) noexcept {
   Action action = make(request, ticket);
@@ -223,11 +101,14 @@ void Actions::overtake(bool deactivate, Reason reason) noexcept {
     remove(i);
     const bool sent = a.phase != Phase::kQueued;
     if (sent) revert(a);
+    linger_activate_ |= sent && kind == CommandKind::kActivate;
+    linger_home_ |= sent && kind == CommandKind::kHome;
     ledger_.report(a.ticket, sent ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason);
   }
 }
 
 void Actions::remove(std::size_t index) noexcept {
+  if (actions_[index].ticket.kind == CommandKind::kDeactivate) linger_activate_ = linger_home_ = false;
   std::copy(actions_.begin() + index + 1, actions_.begin() + count_, actions_.begin() + index);
   --count_;
 }
@@ -285,22 +166,6 @@ void Actions::start(Action& a, const View& view) noexcept {
     case CommandKind::kMotion:
       break;
   }
-}
-
-std::optional<Refusal> Actions::failed(const Action& a, const View& view) const noexcept {
-  const CommandKind kind = a.ticket.kind;
-  const image::RobotStatus& s = view.in.robot_status;
-  const bool moves = kind == CommandKind::kActivate || kind == CommandKind::kHome;
-  const bool needs_health = moves || kind == CommandKind::kResumeMotion || kind == CommandKind::kSimMode ||
-                            kind == CommandKind::kRecoveryMode;
-  if (needs_health && view.fresh && s.error_code != 0) {
-    return Refusal{Reason::kRobotError, {.robot_error = s.error_code}};
-  }
-  if (moves && view.fresh && safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
-  const Time timeout =
-      kind == CommandKind::kDynamicData ? std::min(kDynamicDataTimeout, settings_.timeout) : settings_.timeout;
-  if (view.now - a.started > timeout) return Refusal{Reason::kTimeOut, {.robot_error = s.error_code}};
-  return std::nullopt;
 }
 
 Actions::Verdict Actions::step(Action& a, const View& view) noexcept {
@@ -469,6 +334,7 @@ void Actions::end_all(Reason reason) noexcept {
     if (sent) revert(a);
     ledger_.report(a.ticket, sent ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason);
   }
+  linger_activate_ = linger_home_ = false;
   brakes_asked_.reset();
 }
 
@@ -498,8 +364,8 @@ bool Actions::clearing() const noexcept {
 
 void Actions::write(image::Outputs& out) const noexcept {
   out.robot_control.deactivate = running(CommandKind::kDeactivate) != nullptr;
-  out.robot_control.activate = running(CommandKind::kActivate) != nullptr;
-  out.robot_control.home = running(CommandKind::kHome) != nullptr;
+  out.robot_control.activate = linger_activate_ || running(CommandKind::kActivate);
+  out.robot_control.home = linger_home_ || running(CommandKind::kHome);
   out.robot_control.reset_error = running(CommandKind::kResetError) != nullptr;
   out.robot_control.sim_mode = sim_mode_;
   out.robot_control.recovery_mode = recovery_mode_;

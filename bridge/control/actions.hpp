@@ -47,6 +47,7 @@ class Actions {
 
   // All actions end: running ones ABORTED, queued ones DISCARDED.
   void end_all(Reason reason) noexcept;
+  // Running ones go on to their confirmation: a bit is not dropped halfway.
   void discard_queued(Reason reason) noexcept;
 
   // The stop image's Pause: held until somebody resumes. On firmware 9 letting go of it clears the queue first.
@@ -100,6 +101,9 @@ class Actions {
 
   bool pause_ = false, pause_by_stop_ = false;
   bool sim_mode_ = false, recovery_mode_ = false;
+  // Overtaken by Deactivate, which wins while both are set: they fall together with it, never before the robot heard
+  // it.
+  bool linger_activate_ = false, linger_home_ = false;
   bool brakes_gate_ = false, brakes_engaged_ = false, brakes_returning_ = false;
   std::array<std::uint32_t, image::kDynamicSlots> dynamic_data_{};
   std::uint32_t host_time_ = 0;

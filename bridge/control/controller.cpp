@@ -52,7 +52,7 @@ void Controller::follow_link(const View& view, LinkFacts link) noexcept {
     if (had_link_) {
       had_link_ = seeded_ = false;
       link_lost_at_ = view.now;
-      const bool busy = sequencer_.robot_may_be_busy() || velocity_.active() || stop_.active();
+      const bool busy = robot_may_move(view) || stop_.active();
       stop_on_return_ =
           busy && (!arbiter_.owned() || arbiter_.state().on_loss == LossPolicy::kStopMotion) && !finishing_;
       arbiter_.drop(ControlState::Loss::kLinkLost, true);
@@ -62,13 +62,17 @@ void Controller::follow_link(const View& view, LinkFacts link) noexcept {
       stop_.cancel();
       limits_.forget();
       finishing_ = false;
+      blind_ = true;
+      if (stop_on_return_) actions_.hold_pause(Reason::kLinkLost);
     } else if (!sequencer_.idle() && view.now - link_lost_at_ > kResolvePatience) {
       sequencer_.give_up_unresolved();
     }
+    blind_ = blind_ && link.up;
     return;
   }
   if (!had_link_ && view.fresh) {
     had_link_ = seeded_ = true;
+    blind_ = false;
     actions_.seed(view);
     sequencer_.seed(view);
     in_safety_stop_ = safety_stop(view.in);
@@ -271,7 +275,6 @@ void Controller::lose_owner(ControlState::Loss why, const View& view) noexcept {
   const bool stops = arbiter_.state().on_loss == LossPolicy::kStopMotion;
   arbiter_.drop(why, stops);
   if (stops) {
-    actions_.end_all(Reason::kOwnerLost);
     if (view.in.robot_status.activated || view.in.robot_status.busy) stop(Reason::kOwnerLost, view.now);
   }
   sequencer_.discard_unsent(Reason::kOwnerLost);

@@ -25,7 +25,8 @@ struct ControllerSettings {
 
 // What the cycle knows about the connection in this step.
 struct LinkFacts {
-  bool usable = false;          // link up and images arriving
+  bool up = false;              // as the transport says
+  bool usable = false;          // and images arriving
   bool firmware_known = false;  // and it is one that is expected
 };
 
@@ -36,8 +37,9 @@ class Controller {
   // One cycle, in this order: what the robot says, what clients ask, what has lapsed, what to do about it.
   void step(std::span<const Request> requests, const View& view, LinkFacts link) noexcept;
 
-  // False: this robot is not to be commanded, send nothing.
-  bool may_command() const noexcept { return seeded_ && !monitoring_only_; }
+  // False: this robot is not to be commanded, send nothing. Blind (the link stands, images fail to come) we still send:
+  // the robot may hear that it is to stop.
+  bool may_command() const noexcept { return (seeded_ || blind_) && !monitoring_only_; }
   // The image to send; the dynamic data types are what clients want, without those the firmware probe borrows.
   image::Outputs outputs() noexcept;
   const std::array<std::uint32_t, image::kDynamicSlots>& dynamic_data() const noexcept {
@@ -77,6 +79,7 @@ class Controller {
   bool monitoring_only_ = false;
   bool seeded_ = false;  // the image starts from what the robot shows
   bool had_link_ = false;
+  bool blind_ = false;
   bool stop_on_return_ = false;  // the link went while the owner's motion was under way: stop it when the link is back
   bool finishing_ = false;       // nobody has control, but queued motion is left to finish
   bool in_safety_stop_ = false;

@@ -103,6 +103,19 @@ void MoveSequencer::complete_through(std::size_t count) noexcept {
   }
 }
 
+void MoveSequencer::discard_through(std::size_t count, const View& view) noexcept {
+  const std::uint16_t code = view.in.robot_status.error_code;
+  const Reason reason = code != 0                         ? Reason::kRobotError
+                        : safety_stop(view.in)            ? Reason::kSafetyStop
+                        : !view.in.robot_status.activated ? Reason::kNotActivated
+                                                          : Reason::kCleared;
+  const ReceiptState state = code != 0 ? ReceiptState::kAborted : ReceiptState::kDiscarded;
+  for (; count > 0; --count) {
+    ledger_.report(awaiting_.front().ticket, state, reason, {.robot_error = code});
+    awaiting_.pop();
+  }
+}
+
 void MoveSequencer::reached(const View& view) noexcept {
   const image::MotionStatus& m = view.in.motion_status;
   if (m.checkpoint_reached != last_reached_) {
@@ -114,23 +127,15 @@ void MoveSequencer::reached(const View& view) noexcept {
       }
     }
   }
+  // While the queue is being cleared on purpose, end_all() tells the reason.
   if (m.checkpoint_discarded != last_discarded_) {
     last_discarded_ = m.checkpoint_discarded;
-    for (std::size_t i = 0; i < awaiting_.size(); ++i) {
-      if (awaiting_.at(i).checkpoint != last_discarded_) continue;
-      for (std::size_t n = 0; n <= i; ++n) {
-        ledger_.report(awaiting_.front().ticket, ReceiptState::kDiscarded, Reason::kCleared);
-        awaiting_.pop();
-      }
-      break;
+    for (std::size_t i = 0; i < awaiting_.size() && !dropping_; ++i) {
+      if (awaiting_.at(i).checkpoint == last_discarded_) discard_through(i + 1, view);
     }
   }
   // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).
-  if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) {
-    for (; !awaiting_.empty(); awaiting_.pop()) {
-      ledger_.report(awaiting_.front().ticket, ReceiptState::kDiscarded, Reason::kCleared);
-    }
-  }
+  if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) discard_through(awaiting_.size(), view);
   const bool empty = m.eob && m.eom && m.fifo_space >= kWholeQueue && !m.cleared && !m.paused;
   const bool hidden = empty && !flight_ && !awaiting_.empty() && !own_checkpoint(m.checkpoint_reached);
   idle_images_ = hidden ? idle_images_ + 1 : 0;

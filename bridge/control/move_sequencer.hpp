@@ -96,6 +96,7 @@ class MoveSequencer {
   void acknowledged() noexcept;
   void reached(const View& view) noexcept;
   void complete_through(std::size_t count) noexcept;
+  void discard_through(std::size_t count, const View& view) noexcept;
   void withdraw() noexcept;
 
   Ledger& ledger_;

@@ -11,6 +11,7 @@
 
 #include "bridge/control/receipt_text.hpp"
 #include "bridge/cycle.hpp"
+#include "sim/robot.hpp"
 #include "tests/unit/control/tiny_robot.hpp"
 #include "transports/image/codec.hpp"
 
@@ -59,18 +60,20 @@ class Bench {
     exchange.link = link_up ? LinkState::kUp : LinkState::kDown;
     exchange.fresh = false;
     if (!link_up) return;
-    if (lose_output) {
-      lose_output = false;
-    } else if (exchange.output_valid) {
+    const bool arrives = exchange.output_valid && !lose_output;
+    lose_output = false;
+    if (sim) {
+      arrives ? sim->step(out, settings.cycle) : sim->step_without_outputs(settings.cycle);
+    } else if (arrives) {
       robot.step(out);
     } else {
-      robot.step(idle_);
+      robot.step_without_outputs();
     }
     if (lose_input) {
       lose_input = false;
       return;
     }
-    image::encode_inputs(robot.in, {layout}, exchange.input);
+    image::encode_inputs(sim ? sim->inputs() : robot.in, {layout}, exchange.input);
     exchange.fresh = true;
   }
   void steps(int n) {
@@ -157,6 +160,7 @@ class Bench {
 
   CycleSettings settings;
   TinyRobot robot;
+  sim::Robot* sim = nullptr;  // in place of the tiny robot, when set
   Layout layout;
   std::unique_ptr<bridge::StepResult> result;
   std::unique_ptr<bridge::Cycle> cycle;
@@ -172,9 +176,6 @@ class Bench {
   ClientName client{"cell-plc"};
   LossPolicy policy = LossPolicy::kStopMotion;
   std::uint64_t last_id = 0, renewals = 0, velocities = 0;
-
- private:
-  image::Outputs idle_;
 };
 
 inline bool ended(const Receipt& r, ReceiptState state, Reason reason) {

@@ -45,7 +45,7 @@ TEST(Cycle, starts_the_image_from_what_the_robot_shows) {
   b.robot.in.robot_status.recovery_mode = true;
   b.link_up = true;
   b.step();
-  // The robot's first step was with an idle image, which tells it nothing about modes.
+  // The tiny robot's first step had no image to take the mode from.
   b.robot.in.robot_status.recovery_mode = true;
   image::encode_inputs(b.robot.in, {b.layout}, b.exchange.input);
   b.step_bridge();
