@@ -59,7 +59,19 @@ void read_topic(const Section& topic, const TopicInfo& info, TopicConfig& out) {
   }
 }
 
-void read_topics(const Section& dds, std::map<std::string, TopicConfig>& out) {
+// A period shorter than every cycle is not what happens: say so.
+void warn_of_haste(const Section& topic, const TopicConfig& config, const std::vector<RobotConfig>& robots) {
+  const auto fastest =
+      std::min_element(robots.begin(), robots.end(), [](const auto& a, const auto& b) { return a.cycle < b.cycle; });
+  if (fastest == robots.end() || config.rate != RateKind::kPeriod || config.period >= fastest->cycle) return;
+  if (topic.find("rate") == nullptr) return;
+  topic.report().warning(topic.mark("rate"), topic.path("rate"),
+                         to_string(config.period) + " is shorter than the shortest cycle, " +
+                             to_string(fastest->cycle) + " of '" + fastest->name +
+                             "'; it will be published once a cycle");
+}
+
+void read_topics(const Section& dds, const std::vector<RobotConfig>& robots, std::map<std::string, TopicConfig>& out) {
   const Section topics = dds.child("topics", "dds.topics");
   std::vector<std::string_view> names;
   for (const TopicInfo& info : kTopics) {
@@ -77,12 +89,14 @@ void read_topics(const Section& dds, std::map<std::string, TopicConfig>& out) {
       dds.report().error(key.mark, topics.path(key.text),
                          "the bridge reads this topic and its QoS is part of the contract; leave it out");
     } else {
-      read_topic(topics.child(key.text, "dds.topics.*"), *info, out[key.text]);
+      const Section topic = topics.child(key.text, "dds.topics.*");
+      read_topic(topic, *info, out[key.text]);
+      warn_of_haste(topic, out[key.text], robots);
     }
   }
 }
 
-DdsConfig read_dds(const Section& root) {
+DdsConfig read_dds(const Section& root, const std::vector<RobotConfig>& robots) {
   DdsConfig config;
   const Section dds = root.child("dds", "dds");
   dds.integer("domain", 0, 232, config.domain);
@@ -99,7 +113,7 @@ DdsConfig read_dds(const Section& root) {
     }
   }
   dds.flag("shared_memory", config.shared_memory);
-  read_topics(dds, config.topics);
+  read_topics(dds, robots, config.topics);
   return config;
 }
 
@@ -129,22 +143,6 @@ RealtimeConfig read_realtime(const Section& root) {
   return config;
 }
 
-// A period shorter than every cycle is not what happens: say so.
-void warn_of_fast_topics(const Section& root, const Config& config) {
-  const Section topics = root.child("dds", "dds").child("topics", "dds.topics");
-  if (config.robots.empty()) return;
-  const auto fastest = std::min_element(config.robots.begin(), config.robots.end(),
-                                        [](const auto& a, const auto& b) { return a.cycle < b.cycle; });
-  for (const auto& [name, topic] : config.dds.topics) {
-    if (topic.rate != RateKind::kPeriod || topic.period >= fastest->cycle || topics.find(name) == nullptr) continue;
-    const Section section = topics.child(name, "dds.topics.*");
-    root.report().warning(section.mark("rate"), section.path("rate"),
-                          to_string(topic.period) + " is shorter than the shortest cycle, " +
-                              to_string(fastest->cycle) + " of '" + fastest->name +
-                              "'; it will be published once a cycle");
-  }
-}
-
 ConfigResult whole_file_error(const std::string& file, const std::string& message) {
   ConfigResult result;
   result.errors.push_back({file, 0, 0, "", message});
@@ -168,15 +166,9 @@ ConfigResult parse_config(std::string_view text, const std::string& file_name) {
     config.robots = read_robots(root);
     config.log = read_log(root);
     config.realtime = read_realtime(root);
-    config.dds = read_dds(root);
+    config.dds = read_dds(root, config.robots);
   }
-  ConfigResult result = std::move(report).result(std::move(config));
-  if (!result.config) return result;
-  Report warnings(file_name);  // the sections are read again here, and have no errors any more
-  warn_of_fast_topics(Section(&*document.root, {1, 1}, "", "", warnings), *result.config);
-  const ConfigResult more = std::move(warnings).result({});
-  result.warnings.insert(result.warnings.end(), more.warnings.begin(), more.warnings.end());
-  return result;
+  return std::move(report).result(std::move(config));
 }
 
 ConfigResult load_config(const std::filesystem::path& file) {

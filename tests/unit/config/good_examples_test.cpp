@@ -1,0 +1,255 @@
+// The files of config/ are the manual: every one loads, and reference.yaml names every key with its default.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bridge/config.hpp"
+#include "bridge/config_keys.hpp"
+#include "bridge/config_yaml.hpp"
+#include "bridge/topics.hpp"
+
+namespace {
+
+using namespace meca::bridge;
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+const fs::path kConfig = fs::path(MECA_SOURCE_DIR) / "config";
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string letters(const std::vector<ConfigError>& errors) {
+  std::string text;
+  for (const ConfigError& error : errors) text += to_string(error) + "\n";
+  return text;
+}
+
+// reference.yaml with the lines of the other transports, which it holds as "#:" comments.
+std::string reference_with_all_transports() {
+  std::istringstream in(contents(kConfig / "reference.yaml"));
+  std::string text, line;
+  while (std::getline(in, line)) text += (line.starts_with("#:") ? line.substr(2) : line) + "\n";
+  return text;
+}
+
+// "robots[].transport" + "type" of every value in the tree, in the notation of config_keys.hpp.
+void collect(const yaml::Node& node, const std::string& section, std::set<std::string>& keys) {
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    const std::string& name = node.keys[i].text;
+    const bool topic = section == "dds.topics";
+    if (!topic) keys.insert(section + "/" + name);
+    std::string below = section.empty() ? name : section + "." + (topic ? "*" : name);
+    const yaml::Node& value = node.values[i];
+    if (name == "robots") {
+      for (const yaml::Node& robot : value.values) collect(robot, below + "[]", keys);
+    } else {
+      collect(value, below, keys);
+    }
+  }
+}
+
+bool same(const TopicConfig& a, const TopicConfig& b) {
+  return a.rate == b.rate && a.period == b.period && a.reliable == b.reliable &&
+         a.transient_local == b.transient_local && a.depth == b.depth;
+}
+
+TEST(ConfigFolder, HasOnlyFilesThatLoadWithoutErrorOrWarning) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(kConfig)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const ConfigResult result = load_config(entry.path());
+    EXPECT_EQ(letters(result.errors), "");
+    EXPECT_EQ(letters(result.warnings), "");
+    EXPECT_TRUE(result.config.has_value()) << entry.path();
+    ++files;
+  }
+  EXPECT_GE(files, 3);
+}
+
+TEST(ConfigFolder, CellHasFourRobotsAtOneKilohertz) {
+  const ConfigResult result = load_config(kConfig / "cell.yaml");
+  ASSERT_TRUE(result.config.has_value());
+  ASSERT_EQ(result.config->robots.size(), 4U);
+  std::set<std::string> names;
+  for (const RobotConfig& robot : result.config->robots) {
+    names.insert(robot.name);
+    EXPECT_EQ(robot.type, TransportType::kBuiltin);
+    EXPECT_EQ(robot.cycle, 1ms);
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"arm1", "arm2", "arm3", "arm4"}));
+}
+
+TEST(Reference, NamesEveryKeyTheReaderKnowsAndNoOther) {
+  const yaml::Document document = yaml::parse(reference_with_all_transports());
+  ASSERT_TRUE(document.root.has_value());
+  std::set<std::string> written, known;
+  collect(*document.root, "", written);
+  for (const config_keys::Key& key : config_keys::kKeys) {
+    known.insert(std::string(key.section) + "/" + std::string(key.name));
+  }
+  EXPECT_THAT(written, testing::ContainerEq(known));
+}
+
+TEST(Reference, NamesEveryPublishedTopic) {
+  const yaml::Document document = yaml::parse(contents(kConfig / "reference.yaml"));
+  ASSERT_TRUE(document.root.has_value());
+  const yaml::Node& dds = document.root->values.at(0);
+  std::vector<std::string> written, known;
+  for (const yaml::Node& topic : dds.values.back().keys) written.push_back(topic.text);
+  for (const TopicInfo& info : kTopics) {
+    if (info.direction == Direction::kPublished) known.emplace_back(info.name);
+  }
+  EXPECT_EQ(written, known);
+}
+
+TEST(Reference, HasItsOtherTransportsRightAndOnlyTheirAbsenceToComplainOf) {
+  const ConfigResult result = parse_config(reference_with_all_transports(), "reference.yaml");
+  std::vector<std::string> messages;
+  for (const ConfigError& error : result.errors) messages.push_back(error.key + ": " + error.message);
+  EXPECT_THAT(messages, testing::ElementsAre(
+                            "robots[1].transport.type: 'ethernet_ip' is not in this version yet, only 'builtin' is",
+                            "robots[2].transport.type: 'ethercat' is not in this version yet, only 'builtin' is",
+                            "robots[3].transport.type: 'profinet' is not in this version yet, only 'builtin' is"));
+}
+
+TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
+  const auto reference = load_config(kConfig / "reference.yaml").config;
+  const auto smallest = parse_config("robots: [{name: arm1, transport: {type: builtin}}]", "smallest.yaml").config;
+  ASSERT_TRUE(reference && smallest);
+  EXPECT_EQ(reference->dds.domain, smallest->dds.domain);
+  EXPECT_EQ(reference->dds.participant_name, smallest->dds.participant_name);
+  EXPECT_EQ(reference->dds.topic_prefix, smallest->dds.topic_prefix);
+  EXPECT_EQ(reference->dds.interfaces, smallest->dds.interfaces);
+  EXPECT_EQ(reference->dds.shared_memory, smallest->dds.shared_memory);
+  ASSERT_EQ(reference->dds.topics.size(), smallest->dds.topics.size());
+  for (const auto& [name, topic] : reference->dds.topics) {
+    EXPECT_TRUE(same(topic, smallest->dds.topics.at(name))) << name << ": " << to_string(topic);
+  }
+  EXPECT_EQ(reference->log.level, smallest->log.level);
+  EXPECT_EQ(reference->realtime.priority, smallest->realtime.priority);
+  EXPECT_EQ(reference->realtime.lock_memory, smallest->realtime.lock_memory);
+  EXPECT_EQ(reference->realtime.cpus, smallest->realtime.cpus);
+  const RobotConfig &a = reference->robots.at(0), &b = smallest->robots.at(0);
+  EXPECT_EQ(a.builtin.product, b.builtin.product);
+  EXPECT_EQ(a.builtin.firmware, b.builtin.firmware);
+  EXPECT_EQ(a.builtin.serial_number, b.builtin.serial_number);
+  EXPECT_EQ(a.builtin.instant_homing, b.builtin.instant_homing);
+  EXPECT_EQ(a.builtin.noise, b.builtin.noise);
+  EXPECT_EQ(a.cycle, b.cycle);
+  EXPECT_EQ(a.firmware, b.firmware);
+  EXPECT_EQ(a.dynamic_data, b.dynamic_data);
+  EXPECT_EQ(a.control.enabled, b.control.enabled);
+  EXPECT_EQ(a.control.lease, b.control.lease);
+  EXPECT_EQ(a.control.velocity_lease, b.control.velocity_lease);
+  EXPECT_EQ(a.control.allow_brakes, b.control.allow_brakes);
+}
+
+TEST(SmallestFile, HasTheDefaultsOfTheTopicTable) {
+  const auto config = parse_config("robots: [{name: arm1, transport: {type: builtin}}]", "smallest.yaml").config;
+  ASSERT_TRUE(config.has_value());
+  for (const TopicInfo& info : kTopics) {
+    const auto topic = config->dds.topics.find(std::string(info.name));
+    ASSERT_EQ(topic != config->dds.topics.end(), info.direction == Direction::kPublished) << info.name;
+    if (info.direction == Direction::kPublished) {
+      EXPECT_TRUE(same(topic->second, info.defaults)) << info.name;
+    }
+  }
+}
+
+// Every value away from its default, so that none is read into the wrong place or not at all.
+TEST(ParseConfig, ReadsEveryKey) {
+  const ConfigResult result = parse_config(R"(
+dds:
+  domain: 232
+  participant_name: "Halle 3: Zelle 7"
+  topic_prefix: hall3/cell7/
+  interfaces: [192.168.0.10, 127.0.0.1]
+  shared_memory: false
+  topics:
+    RobotStatus: {rate: every_cycle, reliability: best_effort, durability: volatile, depth: 7}
+    MotionStatus: {rate: 250Hz}
+    CyclicState: {rate: every_cycle}
+    TargetWrf: {rate: off}
+    TargetJointSet: {rate: on_change}
+    BridgeStatus: {rate: 0.5 s}
+    CommandReceipt: {depth: 10000}
+log: {level: trace}
+realtime: {priority: 80, lock_memory: true, cpus: [2, 3]}
+robots:
+  - name: arm_1-A
+    transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false}
+    cycle: 500us
+    firmware: 11.3.3.12637
+    dynamic_data: [40, auto, 10000]
+    control: {enabled: false, lease: 2s, velocity_lease: 1500us, allow_brakes: true}
+  - {name: "2", transport: {type: builtin}, cycle: 10 ms, firmware: auto}
+)",
+                                           "all.yaml");
+  ASSERT_EQ(letters(result.errors), "");
+  EXPECT_EQ(letters(result.warnings), "");
+  const Config& c = *result.config;
+  EXPECT_EQ(c.dds.domain, 232);
+  EXPECT_EQ(c.dds.participant_name, "Halle 3: Zelle 7");
+  EXPECT_EQ(c.dds.topic_prefix, "hall3/cell7/");
+  EXPECT_EQ(c.dds.interfaces, (std::vector<std::string>{"192.168.0.10", "127.0.0.1"}));
+  EXPECT_FALSE(c.dds.shared_memory);
+  EXPECT_EQ(to_string(c.dds.topics.at("RobotStatus")), "every cycle, best_effort, volatile, depth 7");
+  EXPECT_EQ(to_string(c.dds.topics.at("MotionStatus")), "every 4ms, reliable, transient_local, depth 1");
+  EXPECT_EQ(to_string(c.dds.topics.at("CyclicState")), "every cycle, reliable, transient_local, depth 1");
+  EXPECT_EQ(to_string(c.dds.topics.at("TargetWrf")), "off, reliable, transient_local, depth 1");
+  EXPECT_EQ(to_string(c.dds.topics.at("TargetJointSet")), "on change, reliable, transient_local, depth 1");
+  EXPECT_EQ(c.dds.topics.at("BridgeStatus").period, 500ms);
+  EXPECT_EQ(c.dds.topics.at("CommandReceipt").depth, 10000);
+  EXPECT_EQ(c.log.level, "trace");
+  EXPECT_EQ(c.realtime.priority, 80);
+  EXPECT_TRUE(c.realtime.lock_memory);
+  EXPECT_EQ(c.realtime.cpus, (std::vector<int>{2, 3}));
+  ASSERT_EQ(c.robots.size(), 2U);
+  const RobotConfig& r = c.robots[0];
+  EXPECT_EQ(r.name, "arm_1-A");
+  EXPECT_EQ(r.builtin.product, "R3");
+  EXPECT_EQ(r.builtin.firmware, "9.3");
+  EXPECT_EQ(r.builtin.serial_number, 4294967295U);
+  EXPECT_TRUE(r.builtin.instant_homing);
+  EXPECT_FALSE(r.builtin.noise);
+  EXPECT_EQ(r.cycle, 500us);
+  EXPECT_EQ(r.firmware, (meca::transports::FirmwareVersion{11, 3, 3, 12637}));
+  EXPECT_EQ(r.dynamic_data, (std::array<std::uint32_t, 4>{40, 0, 10000, 0}));
+  EXPECT_FALSE(r.control.enabled);
+  EXPECT_EQ(r.control.lease, 2s);
+  EXPECT_EQ(r.control.velocity_lease, 1500us);
+  EXPECT_TRUE(r.control.allow_brakes);
+  EXPECT_EQ(c.robots[1].name, "2");
+  EXPECT_EQ(c.robots[1].cycle, 10ms);
+  EXPECT_EQ(c.robots[1].firmware, meca::transports::FirmwareVersion{});
+}
+
+TEST(ParseConfig, WarnsOfWhatRunsButNotAsMeant) {
+  const ConfigResult result = parse_config(R"(dds:
+  topics:
+    TargetJointSet: {rate: 1ms}
+    DynamicData: {reliability: best_effort, durability: transient_local}
+    RobotStatus: {reliability: best_effort, durability: volatile}
+robots: [{name: arm1, transport: {type: builtin}, cycle: 4ms}]
+)",
+                                           "odd.yaml");
+  ASSERT_TRUE(result.config.has_value());
+  EXPECT_EQ(letters(result.warnings),
+            "odd.yaml:3:28: dds.topics.TargetJointSet.rate: 1ms is shorter than the shortest cycle, 4ms of 'arm1'; it "
+            "will be published once a cycle\n"
+            "odd.yaml:4:53: dds.topics.DynamicData.durability: best_effort writers keep nothing for late joiners; make "
+            "the topic reliable as well\n");
+}
+
+}  // namespace
