@@ -248,7 +248,7 @@ robots: [{name: arm1, transport: {type: builtin}, cycle: 4ms}]
   EXPECT_EQ(letters(result.warnings),
             "odd.yaml:3:28: dds.topics.TargetJointSet.rate: 1ms is shorter than the shortest cycle, 4ms of 'arm1'; it "
             "will be published once a cycle\n"
-            "odd.yaml:4:53: dds.topics.DynamicData.durability: best_effort writers keep nothing for late joiners; make "
+            "odd.yaml:4:57: dds.topics.DynamicData.durability: best_effort writers keep nothing for late joiners; make "
             "the topic reliable as well\n");
 }
 
