@@ -85,7 +85,7 @@ bool Actions::confirmed(const Action& a, const View& view) const noexcept {
     case CommandKind::kPauseMotion:
       return m.paused;
     case CommandKind::kResumeMotion:
-      return !m.paused;
+      return !m.paused && !(view.layout == Layout::kFirmware9 && m.p_stop2);
     case CommandKind::kClearMotion:
       return m.cleared;
     case CommandKind::kSimMode:

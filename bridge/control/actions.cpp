@@ -176,12 +176,10 @@ Actions::Verdict Actions::step(Action& a, const View& view) noexcept {
   return Verdict::kDone;
 }
 
-// Firmware 9: the P-Stop, where there is one, is reset first.
+// Firmware 9: both levels low, and the P-Stop, where there is one, reset in the same image; inferred: with Pause still
+// set the robot may not take the reset.
 void Actions::let_go(Action& a, const View& view) noexcept {
-  if (view.in.motion_status.p_stop2) {
-    enter(a, Phase::kResetPStop, view);
-    return;
-  }
+  a.reset_p_stop = view.in.motion_status.p_stop2;
   enter(a, Phase::kRelease, view);
   pause_ = false;
 }
@@ -199,9 +197,6 @@ Actions::Verdict Actions::step_resume(Action& a, const View& view) noexcept {
       return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
     case Phase::kClearFirst:
       if (settled && view.in.motion_status.cleared) let_go(a, view);
-      return Verdict::kGoOn;
-    case Phase::kResetPStop:
-      if (!view.in.motion_status.p_stop2) let_go(a, view);
       return Verdict::kGoOn;
     case Phase::kRelease:
       return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
@@ -302,6 +297,7 @@ Actions::Events Actions::advance(const View& view, bool hold) noexcept {
       }
       start(a, view);
       events.clear_started |= kind == CommandKind::kClearMotion;
+      events.deactivate_started |= kind == CommandKind::kDeactivate;
       ++i;
       continue;
     }
@@ -357,9 +353,8 @@ void Actions::engage_brakes() noexcept {
 }
 
 bool Actions::clearing() const noexcept {
-  if (running(CommandKind::kClearMotion)) return true;
   const Action* resume = running(CommandKind::kResumeMotion);
-  return resume && (resume->phase == Phase::kClearFirst || (resume->phase == Phase::kResetPStop && pause_by_stop_));
+  return running(CommandKind::kClearMotion) || (resume && resume->phase == Phase::kClearFirst);
 }
 
 void Actions::write(image::Outputs& out) const noexcept {
@@ -372,8 +367,9 @@ void Actions::write(image::Outputs& out) const noexcept {
   out.motion_control.pause_motion = pause_;
   out.motion_control.clear_motion = clearing();
   const Action* resume = running(CommandKind::kResumeMotion);
-  // Phase kResetPStop: on firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset.
-  out.motion_control.resume_motion = resume && (resume->phase == Phase::kRaise || resume->phase == Phase::kResetPStop);
+  // On firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset.
+  const bool reset_p_stop = resume && resume->phase == Phase::kRelease && resume->reset_p_stop;
+  out.motion_control.resume_motion = (resume && resume->phase == Phase::kRaise) || reset_p_stop;
   out.brakes_control.brakes_control_allowed = brakes_gate_;
   out.brakes_control.brakes_engaged = brakes_engaged_;
   out.host_time.seconds = host_time_;

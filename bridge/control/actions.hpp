@@ -28,7 +28,7 @@ class Actions {
   };
   // What other machines must know: the queue is being cleared, or has been.
   struct Events {
-    bool clear_started = false, clear_confirmed = false;
+    bool clear_started = false, clear_confirmed = false, deactivate_started = false;
   };
 
   Actions(Ledger& ledger, const Settings& settings) noexcept;
@@ -58,12 +58,13 @@ class Actions {
   void engage_brakes() noexcept;
 
   bool clearing() const noexcept;  // ClearMotion is in the image: the robot takes no commands
+  bool deactivating() const noexcept { return running(CommandKind::kDeactivate) != nullptr; }
   void write(image::Outputs& out) const noexcept;
   const std::array<std::uint32_t, image::kDynamicSlots>& dynamic_data() const noexcept { return dynamic_data_; }
 
  private:
   // Resume walks through these; the other actions know kSent only.
-  enum class Phase : std::uint8_t { kQueued, kSent, kLowerLevels, kClearFirst, kResetPStop, kRaise, kRelease };
+  enum class Phase : std::uint8_t { kQueued, kSent, kLowerLevels, kClearFirst, kRaise, kRelease };
   struct Action {
     Ticket ticket;
     Phase phase = Phase::kQueued;
@@ -71,8 +72,9 @@ class Actions {
     std::uint8_t slot = 0;  // dynamic data
     std::uint32_t type = 0, previous_type = 0;
     Time started{};
-    int images = 0;       // fresh images since the phase began
-    bool settle = false;  // the confirming bit stood already: believe it only after some images
+    int images = 0;             // fresh images since the phase began
+    bool reset_p_stop = false;  // firmware 9
+    bool settle = false;        // the confirming bit stood already: believe it only after some images
   };
   enum class Verdict : std::uint8_t { kGoOn, kDone };
 

@@ -155,6 +155,7 @@ std::optional<Refusal> Controller::refusal_of_command(const CommandRequest& requ
   if (request.kind != CommandKind::kMotion) return actions_.check(request, ticket, view);
   if (const auto refusal = check_motion_arguments(request, view.layout, limits_)) return refusal;
   if (const auto refusal = check_motion_state(request, view)) return refusal;
+  if (actions_.deactivating()) return Refusal{Reason::kNotActivated};
   if (actions_.pause_held_by_stop() || stop_.active()) return Refusal{Reason::kPaused};
   if (sequencer_.full()) return Refusal{Reason::kQueueFull};
   return std::nullopt;
@@ -314,7 +315,8 @@ void Controller::advance(const View& view) noexcept {
   const Actions::Events events = actions_.advance(view, stop_.active());
   if (events.clear_started) sequencer_.discard_unsent(Reason::kCleared);
   if (events.clear_confirmed && !stop_.active()) sequencer_.end_all(ReceiptState::kDiscarded, Reason::kCleared);
-  const bool dropping = stop_.active() || actions_.clearing();
+  if (events.deactivate_started) sequencer_.discard_unsent(Reason::kNotActivated);
+  const bool dropping = stop_.active() || actions_.clearing() || actions_.deactivating();
   sequencer_.set_dropping(dropping);
   sequencer_.advance(view, dropping || actions_.pause_held_by_stop());
   if (!arbiter_.owned() && sequencer_.handshake_idle()) sequencer_.disarm();

@@ -131,7 +131,14 @@ void MoveSequencer::reached(const View& view) noexcept {
   if (m.checkpoint_discarded != last_discarded_) {
     last_discarded_ = m.checkpoint_discarded;
     for (std::size_t i = 0; i < awaiting_.size() && !dropping_; ++i) {
-      if (awaiting_.at(i).checkpoint == last_discarded_) discard_through(i + 1, view);
+      if (awaiting_.at(i).checkpoint != last_discarded_) continue;
+      discard_through(i + 1, view);
+      // A command behind it whose own checkpoint was not sent yet is gone too, and its checkpoint would prove nothing.
+      if (checkpoint_due_ && awaiting_.empty()) {
+        awaiting_.push({*checkpoint_due_, 0});
+        checkpoint_due_.reset();
+        discard_through(1, view);
+      }
     }
   }
   // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).

@@ -147,8 +147,8 @@ class TinyRobot {
       if (in.safety_status.resettable.p_stop2) {
         in.safety_status.stop.p_stop2 = in.safety_status.resettable.p_stop2 = m.p_stop2 = false;
       }
-    } else if (edge) {
-      violations.push_back("ResumeMotion while Pause, Clear or an error stands");
+    } else if (edge && (c.pause_motion || c.clear_motion)) {
+      violations.push_back("ResumeMotion while Pause or Clear stands");
     }
   }
 
