@@ -15,7 +15,7 @@ fi
 
 # No engine: buildah needs no daemon, and with chroot isolation no privileges beyond root's.
 need buildah
-export BUILDAH_ISOLATION=chroot STORAGE_DRIVER=${STORAGE_DRIVER:-vfs}
+export BUILDAH_ISOLATION=chroot
 if ! buildah inspect --type image "$debian_base" >/dev/null 2>&1 && ! buildah pull -q "$debian_base" >/dev/null 2>&1; then
   base=localhost/debian-bookworm-slim
   if ! buildah inspect --type image "$base" >/dev/null 2>&1; then
@@ -35,4 +35,4 @@ if ! buildah inspect --type image "$debian_base" >/dev/null 2>&1 && ! buildah pu
 fi
 say "building $name with buildah (chroot isolation) on $debian_base"
 # The format that knows HEALTHCHECK.
-exec buildah bud --format docker --build-arg "BASE=$debian_base" -f docker/Dockerfile -t "$name" "$@" .
+exec buildah bud --layers --format docker --build-arg "BASE=$debian_base" -f docker/Dockerfile -t "$name" "$@" .
