@@ -8,8 +8,8 @@ mkdir -p build/bench
 need build
 
 image() {
-  build release bench_image
-  build/release/bin/bench_image --benchmark_out=build/bench/image.json --benchmark_out_format=json "$@"
+  build release image-bench
+  build/release/bin/image-bench --benchmark_out=build/bench/image.json --benchmark_out_format=json "$@"
 }
 measure() {
   local name=$1
