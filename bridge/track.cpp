@@ -31,9 +31,10 @@ bool RateGate::due(const TopicConfig& config, bool changed, bool urgent, Time no
     case RateKind::kEveryCycle:
       return true;
     case RateKind::kOnChange: {
-      const bool result = changed || first_;
+      if (!first_ && !changed && now < next_) return false;
       first_ = false;
-      return result;
+      next_ = now + kRefresh;
+      return true;
     }
     case RateKind::kPeriod: {
       if (first_) {

@@ -43,9 +43,12 @@ inline bool same(const Diagnosis& a, const Diagnosis& b) noexcept {
   return a.ready == b.ready && a.cause == b.cause && a.remedy == b.remedy;
 }
 
-// The decision of one topic of one robot.
+// The decision of one topic of one robot. On change means at once when the value changes, and again every second while it
+// does not: a volatile reader that joins late (the default of every vendor) is not served from the writer's history.
 class RateGate {
  public:
+  static constexpr Time kRefresh = std::chrono::seconds(1);
+
   // `changed`: the value differs from the last one published. `urgent`: it must not wait for its period, because the
   // quality changed: a value that is no longer good must not look good until the period is over.
   bool due(const TopicConfig& config, bool changed, bool urgent, Time now) noexcept;
@@ -80,7 +83,7 @@ class Track {
 // come at most ten times a second each: actual values are never still, and who wants them faster asks for a slot.
 class DynamicTrack {
  public:
-  static constexpr Time kRefresh = std::chrono::seconds(1);
+  static constexpr Time kRefresh = RateGate::kRefresh;
   static constexpr Time kAutomaticInterval = std::chrono::milliseconds(100);
 
   DynamicTrack();

@@ -166,9 +166,9 @@ static void check_late_joiner(int domain) {
   AWAIT(p, DynamicData, *dynamic, are_joint_positions(dynamic));
   meca500_DynamicData_free(dynamic, DDS_FREE_ALL);
   meca500_RobotControl control;
-  AWAIT(p, RobotControl, control, control.activate && !control.deactivate);
+  AWAIT(p, RobotControl, control, !control.activate && !control.home_robot && !control.deactivate);
   meca500_MotionControl moving;
-  AWAIT(p, MotionControl, moving, moving.move_id == motion.move_id && moving.set_point && !moving.pause_motion);
+  AWAIT(p, MotionControl, moving, moving.move_id == motion.move_id && !moving.clear_motion);
   meca500_MotionCommand command;
   AWAIT(p, MotionCommand, command, command.motion_command_id != meca500_MotionCommandId_NO_MOVEMENT);
   meca500_HostTime host;

@@ -86,7 +86,7 @@ Client open_client(dds_entity_t participant, const char* name) {
   client.lease = open_writer(participant, &meca500_ControlLease_desc, "meca500/ControlLease");
   client.receipts = OPEN_READER(participant, CommandReceipt, KEEP_EVERYTHING_READER);
   bool matched = false;
-  for (const double end = seconds_now() + 20; !matched && seconds_now() < end; pause_ms(10))
+  for (const double end = seconds_now() + 30; !matched && seconds_now() < end; pause_ms(10))
     matched = is_matched(client.commands) && is_matched(client.lease);
   check(matched, "the bridge's readers of Command and ControlLease match Cyclone's default writers");
   return client;
