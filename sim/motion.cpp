@@ -116,13 +116,16 @@ double Motion::until_event() const noexcept {
   return active_count_ == 1 && blend > 1e-12 ? blend : a.segment.duration() - a.elapsed;
 }
 
-void Motion::elapse(Time now, double seconds) noexcept {
+void Motion::elapse(Time now, double seconds, const JointLimits& limits) noexcept {
   for (std::size_t i = 0; i < active_count_; ++i) active_[i].elapsed += seconds;
   joints_ = active_[0].segment.at(active_[0].elapsed);
   if (active_count_ > 1) {
     const Joints from = active_[1].segment.start();
     const Joints q = active_[1].segment.at(active_[1].elapsed);
-    for (std::size_t i = 0; i < 6; ++i) joints_[i] += q[i] - from[i];
+    for (std::size_t i = 0; i < 6; ++i) {
+      // A corner that turns back at a limit would round a little beyond it.
+      joints_[i] = std::clamp(joints_[i] + q[i] - from[i], limits.minimum[i], limits.maximum[i]);
+    }
   }
   if (active_[0].elapsed < active_[0].segment.duration() - 1e-12) return;
   if (!done_logged_ && !clearing_) journal_.add({now, active_[0].command, Outcome::kExecuted, 0});
@@ -198,7 +201,7 @@ std::uint16_t Motion::advance(Time now, Time dt, const JointLimits& limits, bool
     if (active_count_ == 0 || left <= 0) break;
     const double step = std::min(left, until_event());
     left -= step;
-    elapse(now, step);
+    elapse(now, step, limits);
   }
   return error::kNone;
 }

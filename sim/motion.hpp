@@ -76,7 +76,7 @@ class Motion {
   double blend_start() const noexcept;
   bool can_blend() const noexcept;
   double until_event() const noexcept;
-  void elapse(Time now, double seconds) noexcept;
+  void elapse(Time now, double seconds, const JointLimits& limits) noexcept;
   void discard(Time now, const Command& command) noexcept;
   void discard_active(Time now) noexcept;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/error.hpp"
 #include "transports/image/motion_commands.hpp"
@@ -18,28 +19,6 @@ double largest_change(const Joints& a, const Joints& b) noexcept {
 Posture without_zero(Posture p) noexcept {
   const auto fill = [](int v) { return v == 0 ? 1 : v; };
   return {fill(p.shoulder), fill(p.elbow), fill(p.wrist)};
-}
-
-// A line that leaves a singularity, or goes exactly through it, continues in the posture that moves the joints least.
-bool follow(const Transform& flange, const Joints& previous, Posture& posture, Joints& out) noexcept {
-  if (!inverse(flange, posture, previous, out)) return false;
-  out[5] = with_nearest_turn(out[5], previous[5], kModelLimits.minimum[5], kModelLimits.maximum[5]);
-  double best = largest_change(out, previous);
-  if (best < 5) return true;
-  for (const Posture other : {Posture{posture.shoulder, posture.elbow, -posture.wrist},
-                              Posture{-posture.shoulder, posture.elbow, posture.wrist},
-                              Posture{-posture.shoulder, posture.elbow, -posture.wrist}}) {
-    Joints q;
-    if (!inverse(flange, other, previous, q)) continue;
-    q[5] = with_nearest_turn(q[5], previous[5], kModelLimits.minimum[5], kModelLimits.maximum[5]);
-    const double change = largest_change(q, previous);
-    if (change < best) {
-      best = change;
-      posture = other;
-      out = q;
-    }
-  }
-  return true;
 }
 
 Joints joints_of(const Command& c) noexcept {
@@ -65,8 +44,46 @@ Joints Segment::at(double seconds) noexcept {
     for (std::size_t i = 0; i < 6; ++i) out[i] = start_[i] + s * (end_[i] - start_[i]);
     return out;
   }
-  if (Joints q; follow(flange_at(s), last_, posture_, q)) last_ = q;
+  std::size_t i = stretch_count_ - 1;
+  while (i > 0 && s < stretches_[i].from) --i;
+  if (Joints q; joints_at(s, stretches_[i].posture, last_, q)) last_ = q;
   return last_;
+}
+
+bool Segment::joints_at(double position, const Posture& posture, const Joints& previous, Joints& out) const noexcept {
+  if (!inverse(flange_at(position), posture, previous, out)) return false;
+  out[5] = with_nearest_turn(out[5], previous[5], kModelLimits.minimum[5], kModelLimits.maximum[5]);
+  return true;
+}
+
+// The posture that moves the joints least; the elbow cannot turn over on a line.
+Posture Segment::nearest_posture(double position, const Posture& now, const Joints& previous) const noexcept {
+  Posture best = now;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Posture p :
+       {now, Posture{now.shoulder, now.elbow, -now.wrist}, Posture{-now.shoulder, now.elbow, now.wrist},
+        Posture{-now.shoulder, now.elbow, -now.wrist}}) {
+    Joints q;
+    if (!joints_at(position, p, previous, q)) continue;
+    if (const double change = largest_change(q, previous); change < least) {
+      least = change;
+      best = p;
+    }
+  }
+  return best;
+}
+
+// Finds where between the two positions `next` takes over, so that following the line in time, with other steps than
+// the planning's, changes posture at the same place. False: more often than a line can.
+bool Segment::change_posture(double before, double after, const Posture& now, const Posture& next,
+                             const Joints& previous) noexcept {
+  if (stretch_count_ == stretches_.size()) return false;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (before + after) / 2;
+    (nearest_posture(middle, now, previous) == now ? before : after) = middle;
+  }
+  stretches_[stretch_count_++] = {after, next};
+  return true;
 }
 
 std::uint16_t Planner::plan(const Command& command, Segment& segment) const noexcept {
@@ -115,12 +132,20 @@ double Planner::joint_time(const Joints& target) const noexcept {
   return out;
 }
 
+std::uint16_t Planner::give_time(double cruise, double ramp, Segment& segment) const noexcept {
+  constexpr int kErrorSeverity = 4;
+  segment.profile_ = Profile(cruise, ramp);
+  if (settings_.move_mode == 0) return error::kNone;
+  const bool too_short = settings_.move_duration < segment.profile_.duration();
+  if (!too_short) segment.profile_ = segment.profile_.lasting(settings_.move_duration);
+  return too_short && settings_.move_duration_severity == kErrorSeverity ? error::kDurationTooShort : error::kNone;
+}
+
 std::uint16_t Planner::plan_joints(const Joints& target, Segment& segment) const noexcept {
   if (!situation_.limits.contains(target)) return error::kJointOverLimit;
   segment.kind_ = Segment::Kind::kJoints;
   segment.end_ = target;
-  segment.profile_ = Profile(joint_time(target), dynamics_.joint_ramp);
-  return error::kNone;
+  return give_time(joint_time(target), dynamics_.joint_ramp, segment);
 }
 
 std::uint16_t Planner::choose_joints(const Transform& flange, Joints& out) const noexcept {
@@ -158,24 +183,44 @@ bool Planner::start_is_in_conf() const noexcept {
   return settings_.auto_conf_turn || turn(situation_.start[5]) == settings_.conf_turn;
 }
 
-std::uint16_t Planner::walk(Segment& segment, double& cruise, int samples) const noexcept {
-  const Posture first = settings_.auto_conf ? without_zero(posture(situation_.start)) : settings_.conf;
-  Posture now = first;
-  Joints previous = situation_.start;
-  for (int i = 1; i <= samples; ++i) {
+// Steps over a piece of line where joints turn fast; fewer than the first walk ever takes, so that it tells them apart.
+constexpr int kFiner = 32, kFewestSamples = 40, kMostSamples = 400;
+
+std::uint16_t Planner::walk_to(Segment& segment, double before, double after, int steps, Joints& previous,
+                               double& cruise) const noexcept {
+  constexpr double kSmooth = 5;  // degrees a joint may turn in one step without a closer look
+  constexpr double kJump = 20;   // and with one
+  for (int i = 1; i <= steps; ++i) {
+    const double a = before + (after - before) * (i - 1) / steps, b = before + (after - before) * i / steps;
+    const Posture now = segment.stretches_[segment.stretch_count_ - 1].posture;
     Joints q;
-    if (!follow(segment.flange_at(static_cast<double>(i) / samples), previous, now, q)) return error::kOutOfReach;
-    // A line past a singularity would need joints to jump; one exactly through it needs another posture behind it.
-    if (largest_change(q, previous) > 20) return error::kSingularity;
-    if (!settings_.auto_conf && now != first) return error::kSingularity;
+    if (!segment.joints_at(b, now, previous, q)) return error::kOutOfReach;
+    if (largest_change(q, previous) > kSmooth) {
+      // A line past a singularity would need joints to jump; one exactly through it needs another posture behind it.
+      const Posture next = segment.nearest_posture(b, now, previous);
+      segment.joints_at(b, next, previous, q);
+      if (largest_change(q, previous) > (steps == kFiner ? kSmooth : kJump)) return error::kSingularity;
+      if (steps != kFiner) {
+        if (const auto code = walk_to(segment, a, b, kFiner, previous, cruise); code != error::kNone) return code;
+        continue;
+      }
+      if (next == now || !settings_.auto_conf) return error::kSingularity;
+      if (!segment.change_posture(a, b, now, next, previous)) return error::kSingularity;
+    }
     if (!situation_.limits.contains(q)) return error::kJointOverLimit;
     for (std::size_t j = 0; j < 6; ++j) {
-      cruise = std::max(cruise, std::abs(q[j] - previous[j]) * samples / dynamics_.speed_limit[j]);
+      cruise = std::max(cruise, std::abs(q[j] - previous[j]) / (b - a) / dynamics_.speed_limit[j]);
     }
     previous = q;
   }
-  segment.end_ = previous;
   return error::kNone;
+}
+
+std::uint16_t Planner::walk(Segment& segment, double& cruise, int samples) const noexcept {
+  segment.stretches_[0] = {0, settings_.auto_conf ? without_zero(posture(situation_.start)) : settings_.conf};
+  segment.stretch_count_ = 1;
+  segment.end_ = situation_.start;
+  return walk_to(segment, 0, 1, samples, segment.end_, cruise);
 }
 
 std::uint16_t Planner::plan_linear(const Transform& tool_target, Segment& segment) const noexcept {
@@ -186,15 +231,13 @@ std::uint16_t Planner::plan_linear(const Transform& tool_target, Segment& segmen
   segment.travel_ = tool_target.p - segment.tool_start_.p;
   segment.turn_ = axis_angle(tool_target.r * transpose(segment.tool_start_.r));
   segment.last_ = situation_.start;
-  segment.posture_ = settings_.auto_conf ? without_zero(posture(situation_.start)) : settings_.conf;
 
   const double distance = norm(segment.travel_);
   const double angle = std::abs(segment.turn_.degrees);
   double cruise = std::max(distance / dynamics_.linear_speed, angle / dynamics_.angular_speed);
-  const double wanted_samples = std::clamp(std::max(distance / 2, angle), 16.0, 400.0);
+  const double wanted_samples = std::clamp<double>(std::max(distance / 2, angle), kFewestSamples, kMostSamples);
   if (const auto code = walk(segment, cruise, static_cast<int>(wanted_samples)); code != error::kNone) return code;
-  segment.profile_ = Profile(cruise, dynamics_.cartesian_ramp);
-  return error::kNone;
+  return give_time(cruise, dynamics_.cartesian_ramp, segment);
 }
 
 }  // namespace meca::sim

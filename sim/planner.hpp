@@ -2,6 +2,7 @@
 // Nothing here keeps state or allocates.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "sim/inverse.hpp"
@@ -29,8 +30,8 @@ class Segment {
   double ramp() const noexcept { return kind_ == Kind::kDelay ? 0 : profile_.ramp(); }               // s
   const Profile& profile() const noexcept { return profile_; }
 
-  // The joints at `seconds` since the start. Linear segments follow their posture from call to call, so time must not
-  // jump back.
+  // The joints at `seconds` since the start. Joint 6 of a linear segment keeps its turn from call to call, so time must
+  // not jump back.
   Joints at(double seconds) noexcept;
 
  private:
@@ -44,9 +45,20 @@ class Segment {
   Vec3 travel_{};
   AxisAngle turn_{};
   Joints last_{};
-  Posture posture_{};
+  // The posture from a position on: the first from the start; the others where the line leaves a singularity it started
+  // in, or goes exactly through one.
+  struct Stretch {
+    double from = 0;
+    Posture posture;
+  };
+  std::array<Stretch, 3> stretches_{};
+  std::size_t stretch_count_ = 0;
 
   Transform flange_at(double position) const noexcept;
+  bool joints_at(double position, const Posture& posture, const Joints& previous, Joints& out) const noexcept;
+  Posture nearest_posture(double position, const Posture& posture, const Joints& previous) const noexcept;
+  bool change_posture(double before, double after, const Posture& now, const Posture& next,
+                      const Joints& previous) noexcept;
 };
 
 class Planner {
@@ -70,6 +82,10 @@ class Planner {
   std::uint16_t plan_linear(const Transform& tool_target, Segment& segment) const noexcept;
   // Walks the line from end to end; the shortest time the joints allow comes out in `cruise`.
   std::uint16_t walk(Segment& segment, double& cruise, int samples) const noexcept;
+  std::uint16_t walk_to(Segment& segment, double before, double after, int steps, Joints& q,
+                        double& cruise) const noexcept;
+  // The profile of a move that could be done in `cruise` at full speed; in time-based mode it lasts SetMoveDuration.
+  std::uint16_t give_time(double cruise, double ramp, Segment& segment) const noexcept;
   bool start_is_in_conf() const noexcept;
   double joint_time(const Joints& target) const noexcept;
 };

@@ -41,6 +41,11 @@ Profile::Profile(double cruise, double ramp) noexcept {
   }
 }
 
+Profile Profile::lasting(double seconds) const noexcept {
+  if (seconds >= 2 * ramp_) return {seconds - ramp_, ramp_};
+  return {seconds / 2, seconds / 2};
+}
+
 Profile::Point Profile::at(double seconds) const noexcept {
   if (seconds <= 0) return {0, 0};
   if (seconds >= duration_) return {1, 0};

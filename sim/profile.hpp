@@ -11,6 +11,9 @@ class Profile {
   // A run too short for full speed keeps the slope of that ramp and turns around earlier.
   Profile(double cruise, double ramp) noexcept;
 
+  // The same ramps, slowed down to take `seconds` (not shorter than it takes now).
+  Profile lasting(double seconds) const noexcept;
+
   struct Point {
     double position;  // 0..1
     double speed;     // per second

@@ -31,9 +31,6 @@ std::uint16_t missing(std::uint32_t id) noexcept {
       return error::kProgramNotFound;
     case image::kSetTorqueLimits:
     case image::kSetTorqueLimitsCfg:
-    case image::kSetMoveMode:
-    case image::kSetMoveDurationCfg:
-    case image::kSetMoveDuration:
     case image::kSetWorkZoneCfg:
     case image::kSetWorkZoneLimits:
     case image::kSetCollisionCfg:

@@ -35,7 +35,7 @@ void Robot::State::advance(Time dt) noexcept {
   ++cycle;
   if (power.advance(dt)) {
     motion.restore_defaults();
-    for (const std::uint32_t type : {20u, 21u, 22u, 25u, 31u}) slots.changed(type);
+    for (const std::uint32_t type : {20u, 21u, 22u, 25u, 29u, 31u, 54u}) slots.changed(type);
     paused = false;
   }
   if (safety.stops_motion()) paused = true;
@@ -92,7 +92,7 @@ void Robot::State::report_pose() noexcept {
   }
   const bool settings_changed = shown_settings != motion.settings_version();
   if (settings_changed) {
-    for (const std::uint32_t type : {20u, 21u, 22u, 31u}) slots.changed(type);
+    for (const std::uint32_t type : {20u, 21u, 22u, 29u, 31u}) slots.changed(type);
   }
   if (shown_before && !settings_changed && rounded == shown_joints) return;
   shown_before = true;

@@ -59,6 +59,23 @@ bool apply_speeds(const Command& c, Settings& s) noexcept {
   }
 }
 
+bool apply_move_mode(const Command& c, Settings& s) noexcept {
+  const float a = c.arguments[0];
+  switch (c.id) {
+    case image::kSetMoveMode:
+      s.move_mode = static_cast<int>(a);
+      return true;
+    case image::kSetMoveDurationCfg:
+      s.move_duration_severity = static_cast<int>(a);
+      return true;
+    case image::kSetMoveDuration:
+      s.move_duration = a;
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool apply_conf(const Command& c, const Joints& now, Settings& s) noexcept {
   const int a = static_cast<int>(c.arguments[0]);  // range checked on reception
   switch (c.id) {
@@ -89,7 +106,8 @@ bool apply_conf(const Command& c, const Joints& now, Settings& s) noexcept {
 }  // namespace
 
 bool apply(const Command& command, const Joints& now, Settings& settings) noexcept {
-  if (apply_speeds(command, settings) || apply_conf(command, now, settings)) return true;
+  if (apply_speeds(command, settings) || apply_move_mode(command, settings) || apply_conf(command, now, settings))
+    return true;
   if (command.id == image::kSetTrf) {
     settings.trf = six(command);
     settings.trf_transform = to_transform(settings.trf);
@@ -121,6 +139,12 @@ Dynamics dynamics(const Settings& s, bool recovery_mode) noexcept {
   out.joint_ramp = kJointRampAt100 * 100 / capped(s.joint_acceleration, 40);
   out.linear_speed = capped(s.linear_velocity, 20);
   out.angular_speed = capped(s.angular_velocity, 30);
+  if (s.move_mode == 1) {
+    // Time-based moves take the time they are given; inferred: what bounds them is what the robot can do at most.
+    out.joint_speed = out.speed_limit;
+    out.linear_speed = capped(5000, 20);
+    out.angular_speed = capped(1000, 30);
+  }
   out.cartesian_ramp = kCartesianRampAt100 * 100 / capped(s.cartesian_acceleration, 40);
   return out;
 }

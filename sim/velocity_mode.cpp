@@ -65,7 +65,12 @@ Joints VelocityMode::wanted(const Settings& settings, const Dynamics& d, const J
   }
   const Mat3 axes =
       command_.id == image::kMoveLinVelTrf ? forward(q).r * settings.trf_transform.r : settings.wrf_transform.r;
-  const auto& a = command_.arguments;
+  // Arguments have no limit; far above what any arm can do, only the direction matters (and squares would overflow).
+  constexpr double kEnough = 1e4;
+  double largest = kEnough;
+  for (const float v : command_.arguments) largest = std::max(largest, std::abs(static_cast<double>(v)));
+  Twist a{};
+  for (std::size_t i = 0; i < 6; ++i) a[i] = command_.arguments[i] * (kEnough / largest);
   const Vec3 linear = axes * Vec3{a[0], a[1], a[2]}, angular = axes * Vec3{a[3], a[4], a[5]};
   const Twist twist{linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
   if (!solve(jacobian(q, settings.trf_transform.p), twist, out)) return {};

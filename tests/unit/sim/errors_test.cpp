@@ -10,7 +10,7 @@ using image::Layout;
 class Refusal : public testing::Test {
  protected:
   Rig rig;
-  std::uint16_t code_of(std::uint32_t id, std::initializer_list<double> arguments = {}) {
+  std::uint16_t code_of(std::uint32_t id, const std::vector<double>& arguments = {}) {
     rig.perform(id, arguments);
     return rig.error();
   }
@@ -58,7 +58,7 @@ TEST_F(Refusal, OfCommandsNewerThanTheFirmwareIs1001) {
 TEST_F(Refusal, OfBadArgumentsIs1003) {
   rig.make_ready();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::pair<std::uint32_t, std::initializer_list<double>> bad[] = {
+  const std::pair<std::uint32_t, std::vector<double>> bad[] = {
       {image::kSetJointVel, {0}},
       {image::kSetJointVel, {151}},
       {image::kSetBlending, {100.5}},
@@ -171,6 +171,15 @@ TEST_F(Refusal, OfALineThatStartsInAnotherTurnIs1033) {
   rig.perform(image::kMoveJoints, {0, 0, 0, 0, 20, 0});
   rig.send(image::kSetConfTurn, {1});
   EXPECT_EQ(code_of(image::kMoveLinRelWrf, {0, 0, -10, 0, 0, 0}), 1033);
+}
+
+TEST_F(Refusal, OfTooShortAMoveDurationIs3051WhenItsSeveritySaysSo) {
+  rig.make_ready();
+  rig.send(image::kSetMoveMode, {1});
+  rig.send(image::kSetMoveDuration, {0.1});
+  EXPECT_EQ(code_of(image::kMoveJoints, {90, 0, 0, 0, 0, 0}), 0);  // a warning by default
+  rig.send(image::kSetMoveDurationCfg, {4});
+  EXPECT_EQ(code_of(image::kMoveJoints, {0, 0, 0, 0, 0, 0}), 3051);
 }
 
 TEST_F(Refusal, WhileInErrorIs1011InTheJournalAndTheFirstErrorStays) {

@@ -17,7 +17,7 @@ PoseNumbers numbers(const image::Pose& p) { return {p.x, p.y, p.z, p.alpha, p.be
 class Moves : public testing::Test {
  protected:
   Moves() { rig.make_ready(); }
-  void go(std::initializer_list<double> joints) { rig.perform(image::kMoveJoints, joints); }
+  void go(const std::vector<double>& joints) { rig.perform(image::kMoveJoints, joints); }
   Joints joints() const {
     Joints q;
     for (int i = 0; i < 6; ++i) q[static_cast<std::size_t>(i)] = rig.joint(i + 1);
@@ -116,6 +116,14 @@ TEST_F(Moves, ADelayIsRestButNotTheEndOfTheBlock) {
   EXPECT_FALSE(rig.motion().eob);
   rig.run(450ms);
   EXPECT_TRUE(rig.motion().eob);
+}
+
+TEST_F(Moves, TimeBasedMovesTakeTheTimeTheyAreGiven) {
+  rig.send(image::kSetMoveMode, {1});
+  rig.send(image::kSetMoveDuration, {2.5});
+  EXPECT_NEAR(seconds(rig.perform(image::kMoveJoints, {60, 10, 10, 0, 40, 0})), 2.5, 0.003);
+  EXPECT_NEAR(seconds(rig.perform(image::kMoveLinRelWrf, {0, 0, -20, 0, 0, 0})), 2.5, 0.003);
+  EXPECT_EQ(rig.error(), 0);
 }
 
 TEST_F(Moves, RelativeJointMovesAddUp) {

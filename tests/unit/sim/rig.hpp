@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <initializer_list>
+#include <vector>
 
 #include "sim/robot.hpp"
 #include "transports/image/motion_commands.hpp"
@@ -72,7 +72,7 @@ class Rig {
   }
 
   // The MoveID handshake: one cycle, then the echo must be there.
-  void send(std::uint32_t id, std::initializer_list<double> arguments = {}) {
+  void send(std::uint32_t id, const std::vector<double>& arguments = {}) {
     out.motion_command.command_id = id;
     out.motion_command.arguments = {};
     std::size_t i = 0;
@@ -83,7 +83,7 @@ class Rig {
     EXPECT_EQ(robot.inputs().motion_status.move_id, out.motion_control.move_id);
   }
   // Sends, and waits until the arm rests with an empty queue.
-  Time perform(std::uint32_t id, std::initializer_list<double> arguments = {}) {
+  Time perform(std::uint32_t id, const std::vector<double>& arguments = {}) {
     send(id, arguments);
     return 1ms + run_until([](const auto& in) { return in.motion_status.eob || in.robot_status.error_code != 0; });
   }
