@@ -1,5 +1,7 @@
 // One robot's cycle from requests to bytes: the walk from a cold robot to a finished move, and what the bytes say
 // meanwhile.
+#include <random>
+
 #include "tests/unit/control/bench.hpp"
 
 namespace meca::test {
@@ -111,6 +113,26 @@ TEST(Cycle, never_commands_a_robot_that_it_may_only_monitor) {
   EXPECT_OUTCOME(b.outcome(kTakeControl), kRejected, Reason::kMonitoringOnly);
   EXPECT_FALSE(b.exchange.output_valid);
   EXPECT_TRUE(b.result->record.control.monitoring_only);
+}
+
+// A transport checks that an image came; what is in it is the robot's business, and a broken robot's too.
+TEST(Cycle, survives_images_of_arbitrary_bytes_and_never_sets_a_reserved_bit) {
+  Bench b;
+  b.connect_ready();
+  std::mt19937 random(7);
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 3 == 0) b.move(1);
+    if (i % 7 == 0) b.pending.push_back(b.velocity(1));
+    if (i % 97 == 0) b.send(static_cast<CommandKind>(random() % 14));
+    b.step_bridge();
+    for (std::byte& byte : b.exchange.input) byte = static_cast<std::byte>(random() & (i % 2 ? 0xff : 0x03));
+    b.exchange.fresh = random() % 8 != 0;
+    b.exchange.link = random() % 500 ? LinkState::kUp : LinkState::kDown;
+    ASSERT_EQ(std::to_integer<int>(b.exchange.output[0]) & 0xc0, 0);
+    ASSERT_EQ(std::to_integer<int>(b.exchange.output[6]) & 0xe0, 0);
+    ASSERT_FALSE(describe(b.receipts.empty() ? Receipt{} : b.receipts.back()).empty());
+  }
+  EXPECT_GT(b.result->record.counters.link_losses, 0u);
 }
 
 }  // namespace

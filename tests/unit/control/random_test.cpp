@@ -1,5 +1,6 @@
 // Thousands of random commands, lost frames, cut links, errors and silent owners; rules that must hold whatever
 // happens. Seeded: a failure names its seed and is repeated by it.
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <random>
@@ -35,6 +36,9 @@ class Player : public Bench {
   }
 
  private:
+  using Key = std::pair<std::string, std::uint64_t>;
+  static Key key(const CommandRequest& r) { return {std::string(r.client.view()), r.command_id}; }
+
   int pick(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
   bool chance(int percent) { return pick(100) < percent; }
 
@@ -48,7 +52,10 @@ class Player : public Bench {
     if (pick(2000) == 0) robot.raise_error(3005);
     if (keep_alive ? pick(700) == 0 : chance(1)) keep_alive = !keep_alive;
     if (pick(3000) == 0) robot.in.safety_status.stop.p_stop2 = robot.in.motion_status.p_stop2 = true;
-    if (pick(200) == 0) robot.in.safety_status.resettable.p_stop2 = robot.in.safety_status.stop.p_stop2;
+    if (pick(200) == 0) {
+      robot.in.safety_status.resettable.p_stop2 = robot.in.safety_status.stop.p_stop2;
+      robot.in.motion_status.p_stop2_resettable = layout == Layout::kFirmware9 && robot.in.motion_status.p_stop2;
+    }
     robot.executes = !chance(40);
   }
 
@@ -146,11 +153,15 @@ class Player : public Bench {
     keep_alive = false;
     lose_output = lose_input = false;
     robot.executes = true;
-    for (int i = 0; i < 40000; ++i) step();  // past every time-out
+    for (int i = 0; i < 40000 && !(i % 500 == 0 && all_ended()); ++i) step();  // at most past every time-out
   }
-
-  using Key = std::pair<std::string, std::uint64_t>;
-  static Key key(const CommandRequest& r) { return {std::string(r.client.view()), r.command_id}; }
+  bool all_ended() const {
+    std::set<Key> ended;
+    for (const Receipt& r : receipts) {
+      if (is_terminal(r.state)) ended.insert({std::string(r.client.view()), r.command_id});
+    }
+    return pending.empty() && std::ranges::includes(ended, asked_);
+  }
 
   void judge() {
     std::map<Key, std::vector<Receipt>> by_command;
