@@ -35,10 +35,14 @@ void expect_each_field_in_its_place(const std::vector<Field<Section, Sample>>& f
   }
 }
 
-#define FLAG(name) \
-  { #name, [](auto& s) { s.name = true; }, [](const auto& s) { return double(s.name()); } }
-#define NUMBER(name, value) \
-  { #name, [](auto& s) { s.name = value; }, [](const auto& s) { return double(s.name()); }, double(value) }
+#define FLAG(name)                                                                        \
+  {                                                                                       \
+#name, [](auto& s) { s.name = true; }, [](const auto& s) { return double(s.name()); } \
+  }
+#define NUMBER(name, value)                                                                               \
+  {                                                                                                       \
+#name, [](auto& s) { s.name = value; }, [](const auto& s) { return double(s.name()); }, double(value) \
+  }
 
 TEST(Mapping, EveryFieldOfRobotStatusHasItsPlace) {
   expect_each_field_in_its_place<image::RobotStatus, meca500::RobotStatus>(
@@ -56,8 +60,8 @@ TEST(Mapping, EveryFieldOfMotionStatusHasItsPlace) {
 TEST(Mapping, EveryJointHasItsPlace) {
   std::vector<Field<image::TargetJointSet, meca500::TargetJointSet>> fields;
   for (std::size_t i = 0; i < 6; ++i) {
-    fields.push_back({"joint", [i](auto& s) { s.joints[i] = -1.5F; },
-                      [i](const auto& s) { return double(s.joints()[i]); }, -1.5});
+    fields.push_back(
+        {"joint", [i](auto& s) { s.joints[i] = -1.5F; }, [i](const auto& s) { return double(s.joints()[i]); }, -1.5});
   }
   expect_each_field_in_its_place(fields);
 }
@@ -84,12 +88,14 @@ TEST(Mapping, EveryFieldOfTheTimestampHasItsPlace) {
       {NUMBER(seconds, 4294967295U), NUMBER(microseconds, 999999), NUMBER(dynamic_data_update_count, 4294967294U)});
 }
 
-#define STOP(list, name) \
-  { #list "." #name, [](auto& s) { s.list.name = true; }, [](const auto& s) { return double(s.list().name()); } }
-#define STOPS(list)                                                                              \
+#define STOP(list, name)                                                                                        \
+  {                                                                                                             \
+#list "." #name, [](auto& s) { s.list.name = true; }, [](const auto& s) { return double(s.list().name()); } \
+  }
+#define STOPS(list)                                                                                \
   STOP(list, e_stop), STOP(list, p_stop1), STOP(list, p_stop2), STOP(list, operation_mode_change), \
-      STOP(list, enabling_device_released), STOP(list, voltage_fluctuation), STOP(list, reboot), \
-      STOP(list, redundancy_fault), STOP(list, standstill_fault), STOP(list, connection_dropped), \
+      STOP(list, enabling_device_released), STOP(list, voltage_fluctuation), STOP(list, reboot),   \
+      STOP(list, redundancy_fault), STOP(list, standstill_fault), STOP(list, connection_dropped),  \
       STOP(list, minor_error)
 
 TEST(Mapping, EveryFieldOfSafetyStatusHasItsPlace) {
@@ -102,9 +108,13 @@ TEST(Mapping, EveryFieldOfSafetyStatusHasItsPlace) {
 
 TEST(Mapping, EveryFieldOfTheOutputsHasItsPlace) {
   expect_each_field_in_its_place<image::RobotControl, meca500::RobotControl>(
-      {FLAG(deactivate), FLAG(activate),
+      {FLAG(deactivate),
+       FLAG(activate),
        {"home", [](auto& s) { s.home = true; }, [](const auto& s) { return double(s.home_robot()); }},
-       FLAG(reset_error), FLAG(sim_mode), FLAG(recovery_mode), FLAG(disable_ethercat)});
+       FLAG(reset_error),
+       FLAG(sim_mode),
+       FLAG(recovery_mode),
+       FLAG(disable_ethercat)});
   expect_each_field_in_its_place<image::MotionControl, meca500::MotionControl>(
       {NUMBER(move_id, 65535), FLAG(set_point), FLAG(pause_motion), FLAG(clear_motion), FLAG(resume_motion),
        FLAG(use_variables)});
@@ -115,15 +125,16 @@ TEST(Mapping, EveryFieldOfTheOutputsHasItsPlace) {
 
 TEST(Mapping, EveryElementOfTheOutputArraysHasItsPlace) {
   std::vector<Field<image::MotionCommand, meca500::MotionCommand>> command{
-      {"id", [](auto& s) { s.command_id = 19999; }, [](const auto& s) { return double(s.motion_command_id()); }, 19999}};
+      {"id", [](auto& s) { s.command_id = 19999; }, [](const auto& s) { return double(s.motion_command_id()); },
+       19999}};
   std::vector<Field<image::DynamicDataConfiguration, meca500::DynamicDataConfiguration>> types;
   for (std::size_t i = 0; i < 6; ++i) {
     command.push_back({"argument", [i](auto& s) { s.arguments[i] = 2.5F; },
                        [i](const auto& s) { return double(s.arguments()[i]); }, 2.5});
   }
   for (std::size_t i = 0; i < image::kDynamicSlots; ++i) {
-    types.push_back({"type", [i](auto& s) { s.type_ids[i] = 40; },
-                     [i](const auto& s) { return double(s.type_ids()[i]); }, 40});
+    types.push_back(
+        {"type", [i](auto& s) { s.type_ids[i] = 40; }, [i](const auto& s) { return double(s.type_ids()[i]); }, 40});
   }
   expect_each_field_in_its_place(command);
   expect_each_field_in_its_place(types);
