@@ -45,18 +45,17 @@ void RobotLog::look(const CycleRecord& record, Time now, std::vector<LogLine>& l
 }
 
 void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
-  if (record.link != link_ || (!link_told_down_ && record.link != LinkState::kUp)) {
+  if (record.link != link_ || first_) {
     const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail);
     if (record.link == LinkState::kUp) {
-      say(kLink, Level::kInfo, "link up", now, lines);
-      link_was_up_ = true;
+      say(kLinkUp, Level::kInfo, "link up", now, lines);
     } else if (link_ == LinkState::kUp) {
-      say(kLink, Level::kWarning, "link down" + detail, now, lines);
-    } else if (!link_told_down_) {
-      say(kLink, Level::kInfo, "no link yet" + detail, now, lines);
-      quiet_[kLink] = {};  // the first "link up" is news
+      say(kLinkDown, Level::kWarning, "link down" + detail, now, lines);
+    } else if (first_) {
+      say(kLinkUp, Level::kInfo, "no link yet" + detail, now, lines);
+      quiet_[kLinkUp] = {};  // the first "link up" is news
     }
-    link_told_down_ = true;
+    first_ = false;
     link_ = record.link;
   }
   if (record.firmware_known && !firmware_known_) {
@@ -64,7 +63,7 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
   }
   firmware_known_ = record.firmware_known;
   if (record.firmware_mismatch && !firmware_mismatch_) {
-    say(kFirmware, Level::kError,
+    say(kMismatch, Level::kError,
         "the robot reports firmware " + to_string(record.firmware) +
             ", the configuration says another generation; correct `firmware:` or use `auto`",
         now, lines);
@@ -76,23 +75,23 @@ void RobotLog::look_at_owner(const control::ControlState& state, Time now, std::
   if (state.owned == owned_ && state.owner == owner_) return;
   using Loss = control::ControlState::Loss;
   if (state.owned) {
-    say(kOwner, Level::kInfo, std::string(state.owner.view()) + " has control", now, lines);
+    say(kOwnerCame, Level::kInfo, std::string(state.owner.view()) + " has control", now, lines);
   } else {
     const std::string who(owner_.view());
     switch (state.last_loss) {
       case Loss::kNone:
       case Loss::kReleased:
-        say(kOwner, Level::kInfo, who + " released control", now, lines);
+        say(kOwnerWent, Level::kInfo, who + " released control", now, lines);
         break;
       case Loss::kLeaseExpired:
-        say(kOwner, Level::kWarning,
+        say(kOwnerWent, Level::kWarning,
             who + " lost control: its lease was not renewed for " + std::to_string(state.lease_ms) + " ms", now, lines);
         break;
       case Loss::kLinkLost:
-        say(kOwner, Level::kWarning, who + " lost control: the link to the robot is gone", now, lines);
+        say(kOwnerWent, Level::kWarning, who + " lost control: the link to the robot is gone", now, lines);
         break;
       case Loss::kShutdown:
-        say(kOwner, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
+        say(kOwnerWent, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
         break;
     }
   }
@@ -105,13 +104,13 @@ void RobotLog::look_at_trouble(const CycleRecord& record, Time now, std::vector<
   const std::uint16_t code = record.inputs.robot_status.error_code;
   if (code != error_code_) {
     if (code != 0) say(kError, Level::kError, error_sentence(code), now, lines);
-    if (code == 0) say(kError, Level::kInfo, "the error is gone", now, lines);
+    if (code == 0) say(kErrorGone, Level::kInfo, "the error is gone", now, lines);
     error_code_ = code;
   }
   const bool stopped = any_stop(record.inputs.safety_status);
   if (stopped != stopped_) {
-    if (stopped) say(kSafety, Level::kWarning, "a safety stop is active; SafetyStatus says which", now, lines);
-    if (!stopped) say(kSafety, Level::kInfo, "no safety stop any more", now, lines);
+    if (stopped) say(kSafetyStop, Level::kWarning, "a safety stop is active; SafetyStatus says which", now, lines);
+    if (!stopped) say(kSafetyGone, Level::kInfo, "no safety stop any more", now, lines);
     stopped_ = stopped;
   }
 }
@@ -120,14 +119,15 @@ void RobotLog::look(const LogFacts& facts, Time now, std::vector<LogLine>& lines
   const auto compare = [&](Event event, std::uint64_t LogFacts::*counter, Level level, const char* what) {
     const std::uint64_t news = facts.*counter - facts_.*counter;
     if (news == 0) return;
-    say(event, level, std::to_string(news) + what + ", " + std::to_string(facts.*counter) + " since the start", now,
-        lines);
+    say(event, level,
+        std::string(what) + ": " + std::to_string(news) + ", " + std::to_string(facts.*counter) + " since the start",
+        now, lines);
   };
-  compare(kMissed, &LogFacts::missed_cycles, Level::kWarning, " cycles missed: the machine woke the loop too late");
+  compare(kMissed, &LogFacts::missed_cycles, Level::kWarning, "missed cycles (the machine woke the loop too late)");
   compare(kDropped, &LogFacts::records_dropped, Level::kWarning,
-          " state records dropped: the publisher came too late for them");
-  compare(kLost, &LogFacts::receipts_lost, Level::kError, " receipts lost");
-  compare(kRefused, &LogFacts::refused_writes, Level::kWarning, " samples refused by DDS");
+          "dropped state records (the publisher came too late for them)");
+  compare(kLost, &LogFacts::receipts_lost, Level::kError, "lost receipts");
+  compare(kRefused, &LogFacts::refused_writes, Level::kWarning, "samples refused by DDS");
   facts_ = facts;
 }
 

@@ -34,7 +34,24 @@ class RobotLog {
   void look(const LogFacts& facts, Time now, std::vector<LogLine>& lines);
 
  private:
-  enum Event { kLink, kFirmware, kOwner, kError, kSafety, kMissed, kDropped, kLost, kRefused, kEvents };
+  // Coming and going are events of their own: a link that goes down just after it came up is news.
+  enum Event {
+    kLinkUp,
+    kLinkDown,
+    kFirmware,
+    kMismatch,
+    kOwnerCame,
+    kOwnerWent,
+    kError,
+    kErrorGone,
+    kSafetyStop,
+    kSafetyGone,
+    kMissed,
+    kDropped,
+    kLost,
+    kRefused,
+    kEvents
+  };
   struct Quiet {
     bool said = false;
     Time until{};
@@ -48,8 +65,7 @@ class RobotLog {
   std::string robot_;
   std::array<Quiet, kEvents> quiet_;
   transports::LinkState link_ = transports::LinkState::kDown;
-  bool link_was_up_ = false;
-  bool link_told_down_ = false;
+  bool first_ = true;
   bool firmware_known_ = false, firmware_mismatch_ = false;
   std::uint16_t error_code_ = 0;
   bool stopped_ = false;

@@ -1,0 +1,127 @@
+// What is worth a line in the log, and how often.
+#include "bridge/robot_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace meca::bridge {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using transports::LinkState;
+
+CycleRecord good() {
+  CycleRecord record;
+  record.link = LinkState::kUp;
+  record.quality = Quality::kGood;
+  return record;
+}
+
+template <typename Facts>
+std::vector<std::string> said(RobotLog& log, const Facts& facts, Time now) {
+  std::vector<LogLine> lines;
+  log.look(facts, now, lines);
+  std::vector<std::string> texts;
+  for (const auto& line : lines) texts.push_back(line.text);
+  return texts;
+}
+
+TEST(RobotLog, TheLinkIsTalkedAboutWhenItChanges) {
+  RobotLog log("arm1");
+  CycleRecord down;
+  down.link_detail = "no reply";
+  EXPECT_THAT(said(log, down, 0s), ElementsAre("arm1: no link yet: no reply"));
+  EXPECT_THAT(said(log, down, 1s), IsEmpty());
+  EXPECT_THAT(said(log, good(), 2s), ElementsAre("arm1: link up"));
+  EXPECT_THAT(said(log, good(), 3s), IsEmpty());
+  EXPECT_THAT(said(log, down, 4s), ElementsAre("arm1: link down: no reply"));
+}
+
+TEST(RobotLog, ALinkThatFlapsIsCountedAndNotRepeated) {
+  RobotLog log("arm1");
+  CycleRecord down;
+  said(log, good(), 0s);
+  EXPECT_THAT(said(log, down, 1s), ElementsAre("arm1: link down"));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THAT(said(log, good(), 2s), IsEmpty());
+    EXPECT_THAT(said(log, down, 2s), IsEmpty());
+  }
+  said(log, good(), 20s);
+  EXPECT_THAT(said(log, down, 20s), ElementsAre("arm1: link down (3 more of this kind since the last line)"));
+}
+
+TEST(RobotLog, FirmwareIsNamedOnceAndAMismatchIsAnError) {
+  RobotLog log("arm1");
+  auto record = good();
+  said(log, record, 0s);
+  record.firmware_known = true;
+  record.firmware = {11, 3, 3, 12637};
+  EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: firmware 11.3.3.12637"));
+  EXPECT_THAT(said(log, record, 2s), IsEmpty());
+  record.firmware_mismatch = true;
+  std::vector<LogLine> lines;
+  log.look(record, 3s, lines);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].level, LogLine::Level::kError);
+}
+
+TEST(RobotLog, OwnersComeAndGoByName) {
+  RobotLog log("arm1");
+  auto record = good();
+  said(log, record, 0s);
+  record.control.owned = true;
+  record.control.owner = std::string_view("plc");
+  record.control.lease_ms = 100;
+  EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: plc has control"));
+  record.control.owned = false;
+  record.control.owner = {};
+  record.control.last_loss = control::ControlState::Loss::kLeaseExpired;
+  EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: plc lost control: its lease was not renewed for 100 ms"));
+}
+
+TEST(RobotLog, ARobotErrorComesWithItsNameAndRemedy) {
+  RobotLog log("arm1");
+  auto record = good();
+  said(log, record, 0s);
+  record.inputs.robot_status.error_code = 1011;
+  EXPECT_THAT(said(log, record, 1s), ElementsAre(HasSubstr("arm1: error 1011 ")));
+  EXPECT_THAT(said(log, record, 2s), IsEmpty());
+  record.inputs.robot_status.error_code = 0;
+  EXPECT_THAT(said(log, record, 3s), ElementsAre("arm1: the error is gone"));
+}
+
+TEST(RobotLog, OldValuesAreNoNews) {
+  RobotLog log("arm1");
+  auto record = good();
+  said(log, record, 0s);
+  record.quality = Quality::kStale;
+  record.inputs.robot_status.error_code = 1011;
+  EXPECT_THAT(said(log, record, 1s), IsEmpty());
+}
+
+TEST(RobotLog, WithoutASafetySectionNothingIsSaidAboutStops) {
+  RobotLog log("arm1");
+  auto record = good();
+  said(log, record, 0s);
+  record.inputs.safety_status.stop.p_stop2 = true;
+  EXPECT_THAT(said(log, record, 1s), IsEmpty());  // known is false: firmware 9
+  record.inputs.safety_status.known = true;
+  EXPECT_THAT(said(log, record, 2s), ElementsAre(HasSubstr("safety stop")));
+}
+
+TEST(RobotLog, CountersThatRiseAreToldWithTheirTotal) {
+  RobotLog log("arm1");
+  EXPECT_THAT(said(log, LogFacts{}, 0s), IsEmpty());
+  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 3}, 1s),
+              ElementsAre("arm1: missed cycles (the machine woke the loop too late): 3, 3 since the start"));
+  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 3}, 30s), IsEmpty());
+  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 5, .receipts_lost = 1}, 60s),
+              ElementsAre("arm1: missed cycles (the machine woke the loop too late): 2, 5 since the start",
+                          "arm1: lost receipts: 1, 1 since the start"));
+}
+
+}  // namespace
+}  // namespace meca::bridge
