@@ -22,7 +22,9 @@ struct Seen {
 
 class ScriptedBus final : public transports::Transport {
  public:
-  explicit ScriptedBus(Seen& seen) : seen_(seen) {}
+  explicit ScriptedBus(Seen& seen) : seen_(seen) {
+    inputs_.robot_status.activated = inputs_.robot_status.homed = true;  // a robot that could be moving
+  }
   std::endian byte_order() const noexcept override { return std::endian::little; }
   void open(Time) override {}
   void exchange(Time, std::span<transports::Exchange> robots) noexcept override {
