@@ -182,7 +182,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 // What is left over after parsing is a mistake; say which.
 void refuse_leftovers(const CLI::App& app, const CLI::App* sub) {
-  const auto left = app.remaining(true);
+  auto left = app.remaining(true);
+  std::erase(left, "--");  // only says that what follows are no options
   if (sub == nullptr) {
     std::vector<std::string> verbs;
     for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());

@@ -1,5 +1,9 @@
 #include "cli/observer.hpp"
 
+#include <algorithm>
+
+#include "cli/plan.hpp"
+
 namespace meca::cli {
 namespace {
 
@@ -14,6 +18,11 @@ std::string names_of(const Views& robots) {
   std::string names;
   for (const auto& [name, view] : robots) names += (names.empty() ? "" : ", ") + name;
   return names;
+}
+
+bool is_complete(const RobotView& view) {
+  return view.bridge && view.control && view.robot_status && view.motion_status && view.joints && view.pose &&
+         view.configuration && view.safety;
 }
 
 }  // namespace
@@ -85,6 +94,16 @@ void Observer::discover(const std::string& wanted, std::chrono::nanoseconds time
                  "In containers: do both share /dev/shm, or does meca-ctl run with --no-shared-memory?");
 }
 
+void Observer::fill(const std::string& wanted, std::chrono::nanoseconds patience) {
+  const auto start = Clock::now();
+  const auto complete = [&] {
+    return std::ranges::all_of(robots_, [&](const auto& robot) {
+      return (!wanted.empty() && robot.first != wanted) || is_complete(robot.second);
+    });
+  };
+  while (!interrupted && !complete() && Clock::now() - start < patience) pump(kGlance);
+}
+
 std::string Observer::choose(const std::string& wanted) const {
   if (!wanted.empty() && robots_.contains(wanted)) return wanted;
   const std::string names = names_of(robots_);
@@ -92,7 +111,7 @@ std::string Observer::choose(const std::string& wanted) const {
     throw NoBridge("no robot '" + wanted + "' on " + bus_.where() + "; there " +
                    (robots_.size() == 1 ? "is " : "are ") + names);
   }
-  if (robots_.size() != 1) throw NoBridge("there are several robots, " + names + ": say which with --robot NAME");
+  if (robots_.size() != 1) throw UsageError("there are several robots, " + names + ": say which with --robot NAME");
   return robots_.begin()->first;
 }
 

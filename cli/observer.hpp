@@ -31,7 +31,11 @@ class Observer {
   // `wanted` not empty: returns as soon as that one is there. Throws NoBridge when the time is over.
   void discover(const std::string& wanted, std::chrono::nanoseconds timeout);
 
-  // The robot meant by `wanted`, or the only one. Throws NoBridge that names those there are.
+  // Waits until every section of that robot, or of all, has come; a bridge may have some switched off, so not for ever.
+  void fill(const std::string& wanted, std::chrono::nanoseconds patience);
+
+  // The robot meant by `wanted`, or the only one. Throws UsageError when there are
+  // several, NoBridge when the one is not there; both name those there are.
   std::string choose(const std::string& wanted) const;
 
  private:

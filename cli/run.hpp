@@ -26,6 +26,9 @@ ExitCode run(const Invocation& call, const Report& report);
 inline std::chrono::nanoseconds seconds_of(double seconds) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
 }
+// For sections that a bridge may have switched off.
+inline constexpr std::chrono::milliseconds kPatience{1500};
+
 inline std::chrono::nanoseconds discovery_timeout(const Invocation& call) {
   return seconds_of(call.timeout_s.value_or(5));
 }

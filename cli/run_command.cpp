@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStreamPeriod = 20ms;  // 50 Hz: the bridge's default velocity lease is 50 ms
+constexpr auto kStreamPeriod = 10ms;  // five samples per default velocity lease of the bridge
 constexpr auto kSoon = 1s;            // what a running bridge answers at once
 
 Client::Progress printer(const Report& report, const std::string& title) {

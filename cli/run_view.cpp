@@ -12,12 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kGlance = 20ms;
-constexpr auto kStatusPatience = 1500ms;  // for sections that a bridge may have switched off
-
-bool is_complete(const RobotView& view) {
-  return view.bridge && view.control && view.robot_status && view.motion_status && view.joints && view.pose &&
-         view.configuration && view.safety;
-}
 
 bool all_of(const Views& robots, bool (*good)(const RobotView&)) {
   for (const auto& [name, view] : robots) {
@@ -69,11 +63,7 @@ ExitCode run_status(const Invocation& call, const Report& report) {
   Bus bus(call);
   Observer observer(bus, Interest::kState);
   observer.discover(call.robot, discovery_timeout(call));
-  const auto start = Clock::now();
-  while (!interrupted && Clock::now() - start < kStatusPatience &&
-         !all_of(chosen(observer.robots(), call.robot), is_complete)) {
-    observer.pump(kGlance);
-  }
+  observer.fill(call.robot, kPatience);
   bool first = true;
   for (const auto& [name, view] : chosen(observer.robots(), call.robot)) {
     report.text((first ? "" : "\n") + status_text(name, view, unix_ns()));

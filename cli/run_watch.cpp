@@ -70,6 +70,7 @@ ExitCode run_watch(const Invocation& call, const Report& report) {
   Bus bus(call);
   Observer observer(bus, Interest::kState);
   observer.discover(call.robot, discovery_timeout(call));
+  observer.fill(call.robot, kPatience);
   const bool live = isatty(STDOUT_FILENO) == 1 && !report.json();
   const auto period = seconds_of(1 / call.rate_hz.value_or(live || report.json() ? 10 : 1));
   if (live) {

@@ -1,4 +1,5 @@
 // `meca-ctl topics`: every topic with its type, who is there, and how many samples a second really arrive.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kBurst = 256;  // samples per robot kept between two looks
+constexpr auto kSettle = 200ms;
 
 struct Line {
   const bridge::TopicInfo* info;
@@ -90,6 +92,19 @@ void count_for(Bus& bus, const std::vector<Line>& lines, std::chrono::nanosecond
   }
 }
 
+// The bridge takes a moment to discover two dozen new readers; until then nothing can be measured.
+void warm_up(Bus& bus, const std::vector<Line>& lines) {
+  const auto arriving = [](const Line& line) {
+    const bool periodic = line.info->defaults.rate == bridge::RateKind::kPeriod;
+    return !periodic || line.matched() == 0 || *line.samples > 0;
+  };
+  const auto start = Clock::now();
+  count_for(bus, lines, kSettle);
+  while (!interrupted && Clock::now() - start < kPatience && !std::ranges::all_of(lines, arriving)) {
+    count_for(bus, lines, kSettle);
+  }
+}
+
 void print(const std::vector<Line>& lines, double seconds, const Report& report) {
   std::vector<std::vector<std::string>> rows{{"TOPIC", "DIRECTION", "DEFAULT RATE", "BRIDGES", "RECEIVED/s", "ABOUT"}};
   for (const auto& line : lines) {
@@ -117,7 +132,7 @@ ExitCode run_topics(const Invocation& call, const Report& report) {
   Observer observer(bus, Interest::kControl);
   observer.discover(call.robot, discovery_timeout(call));
   const auto lines = make_lines(bus);
-  count_for(bus, lines, 300ms);  // until the new readers have been discovered
+  warm_up(bus, lines);
   for (const auto& line : lines) *line.samples = 0;
   const double seconds = call.duration_s.value_or(2);
   count_for(bus, lines, seconds_of(seconds));

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr int kBarWidth = 31;
 constexpr auto kRateWindow = 1s;  // shorter ones make the numbers dance
-constexpr int kLongForm = 15;     // lines of a robot in full, with the blank one behind it
+constexpr int kLongForm = 16;     // lines of a robot in full, with the blank one behind it
 constexpr double kTurn = 360;
 
 // The model's ranges (robot manual, technical specifications), degrees.
@@ -68,13 +68,14 @@ const char* tint_of(const RobotView& view) {
 
 std::string age_text(const Rates& rates) { return rates.age_ms < 0 ? "never" : fixed(rates.age_ms, 0, 0) + " ms ago"; }
 
-std::string rates_text(const RobotView& view, const Rates& rates) {
-  std::string text = "images " + fixed(rates.images, 0, 0) + "/s, joint samples " + fixed(rates.samples, 0, 0) +
-                     "/s, the last " + age_text(rates);
-  if (!view.bridge) return text;
-  const auto& b = *view.bridge;
-  return text + "; missed " + std::to_string(b.missed_cycles()) + ", stale " + std::to_string(b.stale_cycles()) +
-         ", wake-up late up to " + std::to_string(b.wakeup_lateness_max_us()) + " us";
+std::string rates_text(const Rates& rates) {
+  return "images " + fixed(rates.images, 0, 0) + "/s, joint samples " + fixed(rates.samples, 0, 0) + "/s, the last " +
+         age_text(rates);
+}
+
+std::string timing_text(const meca500::BridgeStatus& b) {
+  return "cycle " + std::to_string(b.cycle_us()) + " us, missed " + std::to_string(b.missed_cycles()) + ", stale " +
+         std::to_string(b.stale_cycles()) + ", woken up to " + std::to_string(b.wakeup_lateness_max_us()) + " us late";
 }
 
 std::string quality_text(const RobotView& view) {
@@ -98,7 +99,7 @@ std::string short_form(const std::string& robot, const RobotView& view, const Ra
   if (view.bridge && !view.bridge->ready()) text += "  " + readiness(view) + "\n";
   if (view.joints) text += "  joints" + joints_text(*view.joints) + "\n";
   if (view.pose) text += "  pose  " + pose_text(*view.pose) + "\n";
-  return text + "  " + rates_text(view, rates) + "\n";
+  return text + "  " + rates_text(rates) + "\n";
 }
 
 std::string long_form(const std::string& robot, const RobotView& view, const Rates& rates, bool color) {
@@ -118,7 +119,9 @@ std::string long_form(const std::string& robot, const RobotView& view, const Rat
   if (view.control) {
     text += "  Control  " + std::string(view.control->owned() ? view.control->owner().c_str() : "free") + "\n";
   }
-  return text + "  Rates    " + rates_text(view, rates) + "\n";
+  text += "  Rates    " + rates_text(rates) + "\n";
+  if (view.bridge) text += "  Timing   " + timing_text(*view.bridge) + "\n";
+  return text;
 }
 
 }  // namespace

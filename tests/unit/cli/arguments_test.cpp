@@ -39,6 +39,11 @@ TEST(Arguments, NegativeNumbersArePositionsAndNotOptions) {
   EXPECT_THAT(call.command.arguments, ElementsAre(-10, 0, -0.5, -0.25, -10, 0));
 }
 
+TEST(Arguments, TwoDashesEndTheOptions) {
+  EXPECT_THAT(understood({"move-joints", "--wait", "--", "-1", "-2", "-3", "-4", "-5", "-6"}).command.arguments,
+              ElementsAre(-1, -2, -3, -4, -5, -6));
+}
+
 TEST(Arguments, OptionsMayStandBeforeOrBehindTheCommand) {
   const auto before =
       understood({"--robot", "arm2", "--wait", "--json", "move-lin", "190", "-50", "250", "0", "90", "0"});
