@@ -15,8 +15,10 @@ bool motion_events(const image::Inputs& in) noexcept {
   return safety_stop(in) || in.robot_status.collision_status || in.robot_status.work_zone_status;
 }
 
-bool e_stop(const image::Inputs& in) noexcept {
-  return in.robot_status.e_stop || (in.safety_status.known && in.safety_status.stop.e_stop);
+// An E-Stop, or the stop after a boot, takes the motors' supply; a P-Stop does not (spec 5.6).
+bool motors_cut(const image::Inputs& in) noexcept {
+  const image::SafetyStatus& s = in.safety_status;
+  return in.robot_status.e_stop || (s.known && (s.stop.e_stop || s.stop.reboot));
 }
 
 }  // namespace
@@ -28,7 +30,8 @@ std::optional<Refusal> Actions::check_start(const Action& a, const View& view) c
     case CommandKind::kActivate:
       if (s.activated) return std::nullopt;
       if (s.error_code != 0) return error();
-      if (safety_stop(view.in)) return Refusal{Reason::kSafetyStop};
+      // A P-Stop is no hindrance: only an activated robot can be resumed, and only resuming resets a P-Stop.
+      if (motors_cut(view.in)) return Refusal{Reason::kSafetyStop};
       return std::nullopt;
     case CommandKind::kHome:
       if (!s.activated) return Refusal{Reason::kNotActivated};
@@ -146,7 +149,7 @@ std::optional<Refusal> Actions::failed(const Action& a, const View& view) const 
     return Refusal{Reason::kRobotError, {.robot_error = s.error_code}};
   }
   // A P-Stop only holds it up; an E-Stop takes the motors.
-  if (moves && view.fresh && e_stop(view.in)) return Refusal{Reason::kSafetyStop};
+  if (moves && view.fresh && motors_cut(view.in)) return Refusal{Reason::kSafetyStop};
   if (kind == CommandKind::kHome && view.fresh && !s.activated) return Refusal{Reason::kNotActivated};
   const Time timeout =
       kind == CommandKind::kDynamicData ? std::min(kDynamicDataTimeout, settings_.timeout) : settings_.timeout;

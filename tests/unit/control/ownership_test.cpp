@@ -153,6 +153,24 @@ TEST(OwnerLoss, lets_queued_motion_finish_when_the_owner_asked_for_it) {
   EXPECT_OUTCOME(b.outcome(id), kCompleted, Reason::kNone);
 }
 
+TEST(OwnerLoss, leaves_motion_that_may_finish_in_a_paused_robot_until_it_is_resumed_or_cleared) {
+  for (const CommandKind next : {kResumeMotion, kClearMotion}) {
+    Bench b;
+    b.policy = LossPolicy::kFinishMotion;
+    b.connect_ready();
+    b.outcome(kPauseMotion);
+    const auto id = b.move(1);
+    b.steps(5);
+    b.keep_alive = false;
+    b.steps(500);
+    EXPECT_FALSE(b.terminal(id)) << "the robot still has it";
+    b.client = ClientName("somebody else");
+    b.keep_alive = true;
+    EXPECT_OUTCOME(b.outcome(next), kCompleted, Reason::kNone);
+    EXPECT_EQ(b.outcome(id).state, next == kResumeMotion ? kCompleted : kDiscarded);
+  }
+}
+
 TEST(OwnerLoss, discards_what_was_not_sent_yet_even_when_motion_may_finish) {
   Bench b;
   b.policy = LossPolicy::kFinishMotion;

@@ -137,8 +137,10 @@ class Player : public Bench {
     if (is.resume_motion && !was.resume_motion) ++resume_edges_;
     if (out.robot_control.reset_error && !before.robot_control.reset_error) ++reset_edges_;
     EXPECT_FALSE(is.resume_motion && (is.pause_motion || is.clear_motion));
-    EXPECT_FALSE(is.set_point && is.pause_motion && was.pause_motion && was.move_id != is.move_id &&
-                 result->record.control.owned == false)
+    // The bridge's own checkpoint behind a command that may finish is bookkeeping, and the only exception.
+    const bool own = out.motion_command.command_id == image::kSetCheckpoint && out.motion_command.arguments[0] > 7000;
+    EXPECT_FALSE(is.set_point && is.pause_motion && was.pause_motion && was.move_id != is.move_id && !own &&
+                 !result->record.control.owned)
         << "a command was sent to a stopped robot";
     // Reserved bits (spec 1.1): 0:6 is never used here, 0:7..3:7, 6:5..7:7, 40:2..43:7.
     EXPECT_EQ(std::to_integer<int>(exchange.output[0]) & 0xc0, 0);
@@ -154,6 +156,15 @@ class Player : public Bench {
     lose_output = lose_input = false;
     robot.executes = true;
     for (int i = 0; i < 40000 && !(i % 500 == 0 && all_ended()); ++i) step();  // at most past every time-out
+    if (all_ended()) return;
+    // One excuse only: the owner paused, queued motion that may finish, and went. The robot still has it, so it has not
+    // ended; it does when somebody clears the queue.
+    EXPECT_TRUE(robot.in.motion_status.paused && robot.queued() > 0) << "a command hangs, and not in the robot's queue";
+    client = ClientName("operator");
+    keep_alive = true;
+    note(request(kTakeControl));
+    note(request(kClearMotion));
+    for (int i = 0; i < 1000 && !all_ended(); ++i) step();
   }
   bool all_ended() const {
     std::set<Key> ended;

@@ -136,6 +136,23 @@ TEST(SafetyStop, empties_the_queue_and_waits_for_an_explicit_resume) {
   EXPECT_OUTCOME(b.outcome(b.move(2, false)), kCompleted, Reason::kNone);
 }
 
+// Activate was refused because of the stop, Resume because the robot was not activated: there was no way out.
+TEST(SafetyStop, of_a_deactivated_robot_is_left_by_activating_and_then_resuming) {
+  for (const Layout layout : {Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11}) {
+    Bench b({}, layout);
+    image::Inputs& in = b.robot.in;
+    in.motion_status.p_stop2 = in.safety_status.stop.p_stop2 = true;
+    in.safety_status.resettable.p_stop2 = true;
+    in.motion_status.p_stop2_resettable = layout == Layout::kFirmware9;
+    b.connect();
+    EXPECT_OUTCOME(b.outcome(kActivate), kCompleted, Reason::kNone);
+    EXPECT_OUTCOME(b.outcome(kHome), kRejected, Reason::kSafetyStop);
+    EXPECT_OUTCOME(b.outcome(kResumeMotion), kCompleted, Reason::kNone);
+    EXPECT_OUTCOME(b.outcome(kHome), kCompleted, Reason::kNone);
+    EXPECT_OUTCOME(b.outcome(b.move(1)), kCompleted, Reason::kNone);
+  }
+}
+
 TEST(MonitoringMode, of_the_robot_ends_control_and_the_bridge_falls_silent) {
   Bench b;
   b.connect_ready();
