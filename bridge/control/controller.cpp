@@ -301,7 +301,7 @@ void Controller::shut_down(const View& view) noexcept {
 
 bool Controller::velocity_allowed(const View& view) const noexcept {
   const image::RobotStatus& status = view.in.robot_status;
-  return arbiter_.owned() && sequencer_.idle() && !stop_.active() && !actions_.clearing() &&
+  return arbiter_.owned() && sequencer_.idle() && !stop_.active() && !actions_.clearing() && !actions_.deactivating() &&
          !actions_.pause_held_by_stop() && !view.in.motion_status.paused && status.activated &&
          (status.homed || status.recovery_mode) && status.error_code == 0 && !safety_stop(view.in);
 }
@@ -318,6 +318,9 @@ void Controller::advance(const View& view) noexcept {
   if (events.deactivate_started) sequencer_.discard_unsent(Reason::kNotActivated);
   const bool dropping = stop_.active() || actions_.clearing() || actions_.deactivating();
   sequencer_.set_dropping(dropping);
+  // With SetPoint up a command whose frame was lost would be taken from the very image that empties the queue, and a
+  // checkpoint among them would prove what was just dropped.
+  if (dropping) sequencer_.disarm();
   sequencer_.advance(view, dropping || actions_.pause_held_by_stop());
   if (!arbiter_.owned() && sequencer_.handshake_idle()) sequencer_.disarm();
   velocity_.advance(view, velocity_allowed(view));

@@ -218,6 +218,30 @@ TEST(Handshake, drops_the_queue_on_clear_and_says_so) {
   EXPECT_EQ(b.robot.queued(), 0u);
 }
 
+// The frame with the checkpoint was lost and the next one carried it together with the bit that emptied the queue: the
+// robot reached the checkpoint, and a move that never ran was COMPLETED.
+TEST(Handshake, offers_no_command_in_an_image_that_empties_the_queue) {
+  for (const CommandKind kind : {kDeactivate, kClearMotion}) {
+    Bench b;
+    b.connect_ready();
+    b.robot.executes = false;
+    const auto id = b.move(1);
+    ASSERT_TRUE(b.until([&] { return b.out.motion_command.command_id == image::kMoveJoints; }));
+    b.lose_output = true;  // of the checkpoint
+    b.step();
+    ASSERT_EQ(b.out.motion_command.command_id, image::kSetCheckpoint);
+    b.robot.executes = true;
+    b.robot.in.motion_status.paused = true;  // so that the move stays in the queue until it is dropped
+    b.send(kind);
+    b.step();
+    EXPECT_FALSE(b.out.motion_control.set_point);
+    b.robot.in.motion_status.paused = false;
+    const Receipt r = b.outcome(id);
+    EXPECT_NE(r.state, kCompleted) << describe(r);
+    EXPECT_TRUE(b.robot.executed.empty());
+  }
+}
+
 TEST(Handshake, ends_queued_motion_when_the_robot_is_deactivated) {
   Bench b;
   b.connect_ready();

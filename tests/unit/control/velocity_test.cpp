@@ -87,6 +87,18 @@ TEST(Velocity, gives_way_to_queued_motion_and_comes_back_after_it) {
   EXPECT_TRUE(b.robot.violations.empty()) << b.robot.violations.front();
 }
 
+TEST(Velocity, is_silent_while_the_robot_is_being_deactivated) {
+  Bench b;
+  b.connect_ready();
+  b.outcome(kTakeControl);
+  stream(b, 12, 5);
+  b.send(kDeactivate);
+  stream(b, 12, 1);
+  ASSERT_TRUE(b.out.robot_control.deactivate);
+  EXPECT_FALSE(b.out.motion_control.set_point);
+  EXPECT_EQ(b.out.motion_command.arguments[0], 0.0f);
+}
+
 TEST(Velocity, stops_with_the_owner) {
   Bench b;
   b.connect_ready();
