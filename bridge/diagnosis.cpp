@@ -216,7 +216,7 @@ std::string_view words(control::ControlState::Loss loss) {
     case Loss::kNone:
       break;
     case Loss::kReleased:
-      return "released control";
+      return "paused it or left it with motion queued, and released control";
     case Loss::kLeaseExpired:
       return "did not renew its lease";
     case Loss::kLinkLost:

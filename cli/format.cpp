@@ -139,7 +139,7 @@ std::string safety(const RobotView& view) {
   add_signals(s.resettable(), resettable);
   std::string text = joined(raised, "no stop signal");
   if (!resettable.empty()) text += "; may be reset: " + joined(resettable, "");
-  text += s.vmotor_on() ? "; motors powered" : "; motors without power";
+  text += s.vmotor_on() ? "; motor supply on" : "; motor supply off";
   if (s.reset_ready()) text += "; Reset button may be pressed";
   if (quality != meca500::Quality::GOOD) text += " (" + std::string(name(quality)) + ": last known)";
   return text;

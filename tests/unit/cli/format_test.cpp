@@ -87,12 +87,12 @@ TEST(Readiness, IsTheBridgesCauseAndRemedy) {
 
 TEST(Safety, NamesSignalsAndWhatMayBeReset) {
   auto view = standing_robot();
-  EXPECT_EQ(safety(view), "no stop signal; motors powered");
+  EXPECT_EQ(safety(view), "no stop signal; motor supply on");
   view.safety->stop().p_stop2(true);
   view.safety->stop().e_stop(true);
   view.safety->resettable().p_stop2(true);
   view.safety->vmotor_on(false);
-  EXPECT_EQ(safety(view), "E-Stop, P-Stop 2; may be reset: P-Stop 2; motors without power");
+  EXPECT_EQ(safety(view), "E-Stop, P-Stop 2; may be reset: P-Stop 2; motor supply off");
 }
 
 TEST(Safety, NeverClaimsNoStopWhenTheRobotDoesNotSay) {

@@ -238,6 +238,16 @@ const Situation kSituations[] = {
        r.control.last_loss = ControlState::Loss::kLeaseExpired;
      },
      "the bridge holds the robot (PauseMotion is set): 'cell-plc' did not renew its lease", "'meca-ctl resume'"},
+    {"PausedByAClientThatLeft",
+     [](CycleRecord& r) {
+       r.outputs.motion_control.pause_motion = true;
+       r.control = {};
+       r.control.last_owner = control::ClientName("meca-ctl@host:1");
+       r.control.last_loss = ControlState::Loss::kReleased;
+     },
+     "the bridge holds the robot (PauseMotion is set): 'meca-ctl@host:1' paused it or left it with motion queued, and "
+     "released control",
+     "'meca-ctl resume'"},
     {"PausedByTheRobot", [](CycleRecord& r) { r.inputs.motion_status.paused = true; }, "motion is paused",
      "'meca-ctl resume'"},
     {"PausedOnFirmware9", [](CycleRecord& r) { r.inputs.motion_status.paused = true; }, "motion is paused",
