@@ -221,7 +221,7 @@ TEST_F(MecaCtl, WithSeveralRobotsACommandAsksWhichOne) {
   EXPECT_EQ(status("arm1")["robot_status"]["activated"], false);
   EXPECT_EQ(status("arm2")["robot_status"]["activated"], true);
   EXPECT_EQ(lines_of(ctl({"status", "--json"}).output).size(), 2u);
-  const auto wrong = ctl({"activate", "--robot", "arm3", "--timeout", "1"});
+  const auto wrong = ctl({"activate", "--robot", "arm3", "--timeout", "6"});
   EXPECT_EQ(wrong.exit_code, 4);
   EXPECT_THAT(wrong.output, HasSubstr("no robot 'arm3'"));
   EXPECT_THAT(wrong.output, HasSubstr("there are arm1, arm2"));
