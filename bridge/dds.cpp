@@ -97,6 +97,7 @@ void check_interfaces(const std::vector<std::string>& wanted) {
 DomainParticipantQos participant_qos(const ParticipantOptions& options) {
   DomainParticipantQos qos;
   qos.name(options.name.c_str());
+  vendor::keep_types_private(qos);
   if (!options.interfaces.empty() || !options.shared_memory) {
     auto udp = std::make_shared<vendor::UdpTransport>();
     for (const auto& address : options.interfaces) udp->interfaceWhiteList.emplace_back(address);

@@ -59,6 +59,11 @@ inline bool ok(eprosima::fastdds::dds::ReturnCode_t code) { return code == epros
 inline void set_heartbeat_period(fdds::DataWriterQos& qos, Duration period) {
   qos.reliable_writer_qos().times.heartbeat_period = period;
 }
+// 3 describes its types during discovery, 2.9 does not. Cyclone 0.10.5 finds 3.1's description of our types (seen with
+// BridgeStatus) not assignable to its own and silently does not match; without one it goes by the type's name.
+inline void keep_types_private(fdds::DomainParticipantQos& qos) {
+  qos.properties().properties().emplace_back(fdds::parameter_policy_type_propagation, "disabled");
+}
 #else
 using Duration = eprosima::fastrtps::Duration_t;
 inline constexpr auto kPreallocatedWithRealloc = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
@@ -68,6 +73,7 @@ inline bool ok(const eprosima::fastrtps::types::ReturnCode_t& code) {
 inline void set_heartbeat_period(fdds::DataWriterQos& qos, Duration period) {
   qos.reliable_writer_qos().times.heartbeatPeriod = period;
 }
+inline void keep_types_private(fdds::DomainParticipantQos&) {}
 #endif
 
 }  // namespace meca::dds::vendor

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# shellcheck disable=SC2016 # inner shells expand
 # ./meca test --debian13: the same source, built and tested in a Debian 13 root, for its Fast DDS 3.
 # The root lives in the cache directory and is kept, so that the second time only builds what changed.
 . scripts/common.sh
@@ -19,13 +20,18 @@ fi
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 apt-config dump | grep -i '^Acquire::http.*::Proxy' >"$root/etc/apt/apt.conf.d/90proxy" || true
 
-# A copy of the source: its own build directory, and nothing in the root can touch this tree.
+# A copy of the source: its own build directory, and nothing in the root can touch this tree. Unchanged files keep the time
+# of their copy and changed ones are new, so that the build there never mistakes one for the other, whenever it was edited.
 say "testing on Debian 13 in $root/src"
-mkdir -p "$root/src"
-find "$root/src" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
-tar --create --exclude=./build --exclude=./.git . | tar --extract --directory "$root/src"
+mkdir -p "$root/src/build"
+rm -rf "$root/src.new"
+mkdir "$root/src.new"
+tar --create --exclude=./build --exclude=./.git . | tar --extract --touch --directory "$root/src.new"
+(cd "$root/src.new" && find . -type f -exec sh -c 'cmp -s "$1" "../src/$1" && touch -r "../src/$1" "$1"' _ {} \;)
+mv "$root/src/build" "$root/src.new/build"
+rm -rf "$root/src"
+mv "$root/src.new" "$root/src"
 
-# shellcheck disable=SC2016 # the inner shell expands
 # In namespaces of its own: mounts and stray processes are gone when it ends.
 exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 MECA_JOBS="$jobs" \
   unshare --mount --pid --fork --kill-child bash -euc '

@@ -9,6 +9,7 @@
 #include "tests/bench/raw_dds.hpp"
 #include "tests/bench/readers.hpp"
 #include "tests/bench/scenarios.hpp"
+#include "tests/bench/table.hpp"
 
 using namespace meca::bench;
 
@@ -29,7 +30,7 @@ int main(int argc, char** argv) try {
   app.add_option("--domain", setting.domain, "DDS domain")->capture_default_str();
   app.add_option("--json", json_file, "Also write the figures to this file");
 
-  nlohmann::json figures;
+  nlohmann::ordered_json figures;
   const auto scenario = [&](const char* name, const char* about, auto measure) {
     app.add_subcommand(name, about)->callback([&, name, measure] {
       setting.duration = std::chrono::seconds(seconds);
@@ -61,7 +62,7 @@ int main(int argc, char** argv) try {
 
   CLI11_PARSE(app, argc, argv);
   if (!figures.is_null()) {
-    std::printf("%s\n", figures.dump(2).c_str());
+    for (const auto& [name, figure] : figures.items()) std::printf("%s", table(name, figure).c_str());
     if (!json_file.empty()) std::ofstream(json_file) << figures.dump(2) << "\n";
   }
   return 0;

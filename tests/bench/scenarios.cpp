@@ -20,7 +20,7 @@
 namespace meca::bench {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 using std::chrono::seconds;
 
 std::filesystem::path write_config(const Setting& setting, int robots, bool whole_image) {

@@ -15,15 +15,15 @@ struct Setting {
 };
 
 // Robot image -> CyclicState sample in another process, beside raw Fast DDS writing the same type at the same rate.
-nlohmann::json measure_latency(const Setting& setting);
+nlohmann::ordered_json measure_latency(const Setting& setting);
 
 // CPU of the bridge for 1, 4, 16, 64 built-in robots at 1 kHz, beside as many raw Fast DDS writes.
-nlohmann::json measure_cpu(const Setting& setting);
+nlohmann::ordered_json measure_cpu(const Setting& setting);
 
 // How late the cycle thread wakes up, beside a bare clock_nanosleep loop.
-nlohmann::json measure_wakeup(const Setting& setting);
+nlohmann::ordered_json measure_wakeup(const Setting& setting);
 
 // Four robots at 1 kHz: missed cycles without a reader, with one, and with one that is stopped (SIGSTOP).
-nlohmann::json measure_stopped_reader(const Setting& setting);
+nlohmann::ordered_json measure_stopped_reader(const Setting& setting);
 
 }  // namespace meca::bench
