@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <charconv>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -19,47 +18,15 @@
 namespace meca::bridge {
 namespace {
 
-std::string_view transport_name(TransportType type) {
-  switch (type) {
-    case TransportType::kBuiltin:
-      return "builtin";
-    case TransportType::kEthernetIp:
-      return "ethernet_ip";
-    case TransportType::kEthercat:
-      return "ethercat";
-    case TransportType::kProfinet:
-      return "profinet";
-  }
-  return "";
-}
-
-image::Layout layout_of(std::uint16_t major) {
-  if (major <= 9) return image::Layout::kFirmware9;
-  return major == 10 ? image::Layout::kFirmware10 : image::Layout::kFirmware11;
-}
-
-// "11.3.1" -> 11, 3, 1, 0. The configuration has been checked; what is missing is 0.
-std::array<std::uint16_t, 4> parse_version(std::string_view text) {
-  std::array<std::uint16_t, 4> numbers{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (auto& number : numbers) {
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{} || next == end) break;
-    at = next + 1;
-  }
-  return numbers;
-}
-
 sim::RobotOptions model_of(const RobotConfig& robot) {
   const auto& config = robot.builtin;
-  const auto version = parse_version(config.firmware);
+  const auto version = parse_firmware(config.firmware).value_or(transports::FirmwareVersion{});
   sim::RobotOptions options;
   options.product = config.product == "R3" ? sim::Product::kMeca500R3 : sim::Product::kMeca500R4;
-  options.layout = layout_of(version[0]);
-  options.firmware_minor = version[1];
-  options.firmware_patch = version[2];
-  if (version[3] != 0) options.firmware_build = version[3];
+  options.layout = image::layout_of(version.major).value_or(image::Layout::kFirmware11);
+  options.firmware_minor = version.minor;
+  options.firmware_patch = version.patch;
+  if (version.build != 0) options.firmware_build = version.build;
   options.serial_number = config.serial_number;
   options.noise = config.noise;
   options.seed = config.serial_number;
@@ -89,7 +56,7 @@ Time monotonic() { return std::chrono::steady_clock::now().time_since_epoch(); }
 // Every robot has a bus of its own here: no network joins built-in robots.
 LoopBus open_bus(const RobotConfig& robot, RobotChannel& channel) {
   if (robot.type != TransportType::kBuiltin) {
-    throw std::runtime_error(robot.name + ": transport type '" + std::string(transport_name(robot.type)) +
+    throw std::runtime_error(robot.name + ": transport type '" + std::string(to_string(robot.type)) +
                              "' is not built yet; this version has 'builtin'");
   }
   LoopBus bus;
@@ -175,7 +142,7 @@ std::vector<PublishedRobot> Bridge::Impl::published_robots(const Config& config)
   std::vector<PublishedRobot> robots;
   for (std::size_t i = 0; i < config.robots.size(); ++i) {
     robots.push_back({.channel = channels[i].get(),
-                      .transport = std::string(transport_name(config.robots[i].type)),
+                      .transport = std::string(to_string(config.robots[i].type)),
                       .cycle = config.robots[i].cycle,
                       .pace = [loop = loop_of[i]] { return loop->pace(); }});
   }

@@ -39,18 +39,6 @@ void set_common(Sample& sample, std::string_view robot, const meca500::Header& h
   sample.header(header);
 }
 
-std::string_view layout_name(image::Layout layout) {
-  switch (layout) {
-    case image::Layout::kFirmware9:
-      return "9.x";
-    case image::Layout::kFirmware10:
-      return "10.x";
-    case image::Layout::kFirmware11:
-      return "11.x";
-  }
-  return "";
-}
-
 // Product types of dynamic data type 2.
 std::string product_name(std::uint32_t type) {
   switch (type) {
@@ -285,7 +273,7 @@ void fill(const CycleRecord& record, const Diagnosis& diagnosis, const StatusFac
   set_text(sample.link_detail(), record.link_detail);
   sample.firmware_known(record.firmware_known);
   set_text(sample.firmware(), record.firmware_known ? to_string(record.firmware) : std::string{});
-  set_text(sample.layout(), record.firmware_known ? layout_name(record.layout) : std::string_view{});
+  set_text(sample.layout(), record.firmware_known ? image::to_string(record.layout) : std::string_view{});
   set_text(sample.product(), product_name(record.product_type));
   sample.serial_number(record.serial_number);
   sample.ready(diagnosis.ready);

@@ -55,18 +55,6 @@ std::vector<std::byte> parse_content(std::string_view content, const std::string
 
 std::string read_all(std::istream& stream) { return {std::istreambuf_iterator<char>(stream), {}}; }
 
-std::string_view layout_name(image::Layout layout) {
-  switch (layout) {
-    case image::Layout::kFirmware9:
-      return "9.x";
-    case image::Layout::kFirmware10:
-      return "10.x";
-    case image::Layout::kFirmware11:
-      return "11.x";
-  }
-  return "?";
-}
-
 std::vector<image::FieldText> fields(std::span<const std::byte> bytes, image::Format format) {
   if (bytes.size() == image::kInputSize) return image::fields_of_inputs(bytes.first<image::kInputSize>(), format);
   if (bytes.size() == image::kOutputSize) return image::fields_of_outputs(bytes.first<image::kOutputSize>(), format);
@@ -83,7 +71,7 @@ Json literal(const std::string& value) {
 std::string as_json(const std::vector<image::FieldText>& rows, image::Format format, bool input) {
   Json json;
   json["image"] = input ? "input" : "output";
-  json["layout"] = layout_name(format.layout);
+  json["layout"] = image::to_string(format.layout);
   json["byte_order"] = format.byte_order == std::endian::big ? "big" : "little";
   for (const auto& row : rows) {
     Json& section = json["sections"][std::string(row.section)];
@@ -101,7 +89,7 @@ std::string as_text(const std::vector<image::FieldText>& rows, image::Format for
   for (const auto& row : rows) width = std::max(width, row.name.size());
   std::ostringstream out;
   out << (input ? "Input image (robot -> host), 252 bytes" : "Output image (host -> robot), 60 bytes") << ", firmware "
-      << layout_name(format.layout) << ", " << (format.byte_order == std::endian::big ? "big" : "little")
+      << image::to_string(format.layout) << ", " << (format.byte_order == std::endian::big ? "big" : "little")
       << "-endian\n";
   std::string_view section;
   for (const auto& row : rows) {
@@ -148,9 +136,7 @@ image::Layout parse_firmware(std::string_view text) {
   unsigned major = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), major);
   const bool number = error == std::errc{} && (end == text.data() + text.size() || *end == '.');
-  if (number && major == 9) return image::Layout::kFirmware9;
-  if (number && major == 10) return image::Layout::kFirmware10;
-  if (number && major == 11) return image::Layout::kFirmware11;
+  if (number && major <= 11 && image::layout_of(major)) return *image::layout_of(major);
   const std::string why = number && major < 9 ? "has another, smaller image" : "is not known here";
   throw UsageError("--firmware: '" + std::string(text) + "' " + why + "; use 9.x, 10.x or 11.x, as in 11.3");
 }

@@ -10,6 +10,7 @@ namespace meca::control {
 namespace {
 
 using image::Layout;
+using image::layout_of;
 using transports::FirmwareVersion;
 
 constexpr Time kGiveUpAfter = std::chrono::seconds(2);  // not published: a robot that has not told by then will not
@@ -17,12 +18,6 @@ constexpr Time kGiveUpAfter = std::chrono::seconds(2);  // not published: a robo
 std::optional<std::uint16_t> whole16(float value) noexcept {
   if (!(value >= 0.0f && value <= 65535.0f) || value != std::trunc(value)) return std::nullopt;
   return static_cast<std::uint16_t>(value);
-}
-
-// inferred: generations after 11 keep its layout until a document says otherwise.
-std::optional<Layout> layout_of(std::uint16_t major) noexcept {
-  if (major < 9) return std::nullopt;
-  return major == 9 ? Layout::kFirmware9 : major == 10 ? Layout::kFirmware10 : Layout::kFirmware11;
 }
 
 FirmwareVersion version_from(const image::DynamicData& data) noexcept {

@@ -7,6 +7,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 namespace meca::image {
 
@@ -20,6 +22,26 @@ using InputBytes = std::array<std::byte, kInputSize>;
 // Firmware 9, 10 and 11 share the sizes and differ in meaning. The layout follows from the firmware the robot reports,
 // never from a size or an EtherCAT revision (both stay the same).
 enum class Layout : std::uint8_t { kFirmware9, kFirmware10, kFirmware11 };
+
+// By the firmware's major version; empty before 9, whose image is another one. inferred: generations after 11 keep its
+// layout until a document says otherwise.
+constexpr std::optional<Layout> layout_of(unsigned major) noexcept {
+  if (major < 9) return std::nullopt;
+  return major == 9 ? Layout::kFirmware9 : major == 10 ? Layout::kFirmware10 : Layout::kFirmware11;
+}
+
+// "9.x", "10.x", "11.x".
+constexpr std::string_view to_string(Layout layout) noexcept {
+  switch (layout) {
+    case Layout::kFirmware9:
+      return "9.x";
+    case Layout::kFirmware10:
+      return "10.x";
+    case Layout::kFirmware11:
+      return "11.x";
+  }
+  return "";
+}
 
 // ---------------------------------------------------------------- output, host -> robot
 
