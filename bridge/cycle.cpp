@@ -62,6 +62,7 @@ void Cycle::State::receive(const transports::Exchange& exchange, Stamp stamp) no
   } else if (up) {
     ++counters.stale_cycles;
   }
+  if (!firmware.known()) inputs.safety_status.known = false;  // what was last seen is no "no stop" after a lost link
   if (!has_image) return;
   inputs = image::decode_inputs(bytes, {firmware.layout(), settings.byte_order});
   const image::Layout before = firmware.layout();

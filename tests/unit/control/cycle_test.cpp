@@ -79,6 +79,17 @@ TEST(Cycle, says_unknown_until_the_firmware_is_known_and_claims_no_safety_status
       << "borrowed slots are given back";
 }
 
+// Found by cycle_fuzz: the last image's safety section stayed "known" after the link and with it the firmware was lost.
+TEST(Cycle, claims_no_safety_status_from_before_a_lost_link) {
+  Bench b;
+  b.connect();
+  ASSERT_TRUE(b.result->record.inputs.safety_status.known);
+  b.link_up = false;
+  b.steps(2);
+  EXPECT_FALSE(b.result->record.firmware_known);
+  EXPECT_FALSE(b.result->record.inputs.safety_status.known);
+}
+
 TEST(Cycle, calls_old_values_stale_and_then_disconnected) {
   Bench b;
   b.connect();
