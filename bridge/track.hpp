@@ -43,8 +43,8 @@ inline bool same(const Diagnosis& a, const Diagnosis& b) noexcept {
   return a.ready == b.ready && a.cause == b.cause && a.remedy == b.remedy;
 }
 
-// The decision of one topic of one robot. On change means at once when the value changes, and again every second while it
-// does not: a volatile reader that joins late (the default of every vendor) is not served from the writer's history.
+// The decision of one topic of one robot. On change means at once when the value changes, and again every second while
+// it does not: a volatile reader that joins late (the default of every vendor) is not served from the writer's history.
 class RateGate {
  public:
   static constexpr Time kRefresh = std::chrono::seconds(1);

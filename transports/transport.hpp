@@ -34,9 +34,9 @@ struct Exchange {
 
   // robot -> host, written by the transport in exchange()
   image::InputBytes input{};
-  bool fresh = false;               // `input` arrived since the last exchange
+  bool fresh = false;  // `input` arrived since the last exchange
   LinkState link = LinkState::kDown;
-  FirmwareVersion identity{};       // from the protocol's identity, where it has one (EtherNet/IP); else unknown
+  FirmwareVersion identity{};  // from the protocol's identity, where it has one (EtherNet/IP); else unknown
   // First words of why the link is not up; points at a string literal, never null-terminated guesses.
   std::string_view link_detail{};
 };

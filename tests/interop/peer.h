@@ -15,9 +15,9 @@
   X(RobotStatus)                                                                                                   \
   X(MotionStatus)                                                                                                  \
   X(TargetJointSet)                                                                                                \
-  X(TargetEndEffectorPose) X(TargetConfiguration) X(TargetWrf) X(TargetTrf) X(RobotTimestamp) X(SafetyStatus)      \
-      X(DynamicData) X(CyclicState) X(RobotControl) X(MotionControl) X(MotionCommand) X(HostTime) X(BrakesControl) \
-          X(DynamicDataConfiguration)
+  X(TargetEndEffectorPose)                                                                                         \
+  X(TargetConfiguration) X(TargetWrf) X(TargetTrf) X(RobotTimestamp) X(SafetyStatus) X(DynamicData) X(CyclicState) \
+      X(RobotControl) X(MotionControl) X(MotionCommand) X(HostTime) X(BrakesControl) X(DynamicDataConfiguration)
 #define OTHER_TOPICS(X) X(BridgeStatus) X(ControlStatus) X(CommandReceipt)
 
 #define ROBOT "arm1"
