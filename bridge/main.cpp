@@ -1,7 +1,6 @@
 // meca-bridge: arguments, configuration, signals, exit code; the work is done by Bridge.
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <exception>
@@ -27,21 +26,10 @@ void start_log(const std::string& level) {
   spdlog::set_level(spdlog::level::from_str(level));
 }
 
-constexpr const char* kWhatNext = R"(
-The bridge runs until Ctrl-C. In another terminal:
-
-  meca-ctl status              what each robot is doing, and why not
-  meca-ctl activate            motors on
-  meca-ctl home                then it can move
-  meca-ctl move-joints 30 20 -10 15 40 0 --wait
-
-)";
-
 ExitCode run(const Config& config, const sigset_t& stop_signals) {
   Bridge bridge(config);
   bridge.start();
   for (const RobotConfig& robot : config.robots) spdlog::info("{}", describe(robot));
-  if (isatty(STDERR_FILENO) != 0) std::cerr << kWhatNext;
   int signal = 0;
   sigwait(&stop_signals, &signal);
   spdlog::info("{}: stopping", signal == SIGINT ? "Ctrl-C" : "asked to stop");

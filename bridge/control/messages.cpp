@@ -1,1 +1,0 @@
-#include "bridge/control/messages.hpp"
