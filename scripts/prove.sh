@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# ./meca prove [WORD] [options]: the long proofs of what is promised about control, each by one word; without a word, all.
+# ./meca test runs the same tests in a shorter form. Figures are printed; the exit code says whether the promise held.
+. scripts/common.sh
+which=${1:-all}
+[ $# -gt 0 ] && shift
+
+# in_test PROGRAM FILTER: unit tests in simulated time, at full length.
+in_test() {
+  build release "$1"
+  "build/release/bin/$1" --gtest_filter="$2"
+}
+# measured NAME [options]: a scenario of meca-bench: real processes over DDS.
+measured() {
+  local name=$1
+  shift
+  mkdir -p build/bench
+  build release meca-bridge meca-bench
+  build/release/bin/meca-bench "$name" --json "build/bench/$name.json" "$@"
+}
+
+prove() {
+  case $1 in
+    million) MECA_COMMANDS=${MECA_COMMANDS:-1000000} in_test test_control 'Million*' ;;
+    faults) MECA_FAULT_SEQUENCES=${MECA_FAULT_SEQUENCES:-10000} in_test test_control '*FaultAndRecovery*' ;;
+    stops) in_test test_stops '*' ;;
+    deaths | fight | throughput) measured "$@" ;;
+    *) die "prove: '$1' is not million, faults, deaths, fight, throughput or stops" ;;
+  esac
+}
+
+need build
+if [ "$which" = all ]; then
+  for which in million faults stops deaths fight throughput; do prove "$which"; done
+else
+  prove "$which" "$@"
+fi
