@@ -223,6 +223,8 @@ std::string_view words(control::ControlState::Loss loss) {
       return "was in control when the link was lost";
     case Loss::kShutdown:
       return "was in control when the bridge was stopped";
+    case Loss::kTakenOver:
+      return "was in control when a client of higher priority took over";
   }
   return {};
 }

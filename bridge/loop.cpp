@@ -95,6 +95,7 @@ void BusGroup::close(Stamp stamp) noexcept {
         record.control.owned = false;
         record.control.last_owner = record.control.owner;
         record.control.owner = {};
+        record.control.contender = {};
         record.control.last_loss = control::ControlState::Loss::kShutdown;
         record.control.since_unix_ns = stamp.unix_ns;
       }

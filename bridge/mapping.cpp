@@ -66,6 +66,8 @@ std::string_view loss_name(control::ControlState::Loss loss) {
       return "link lost";
     case Loss::kShutdown:
       return "the bridge is stopping";
+    case Loss::kTakenOver:
+      return "taken over";
   }
   return "";
 }
@@ -254,8 +256,12 @@ void fill(const control::ControlState& state, meca500::ControlStatus& sample) {
   set_text(sample.owner(), state.owner);
   set_text(sample.owner_participant(), state.owned ? to_string(state.owner_participant) : std::string{});
   sample.since_ns(state.since_unix_ns);
+  sample.priority(state.priority);
   sample.lease_ms(state.lease_ms);
   sample.on_loss(to_idl(state.on_loss));
+  set_text(sample.contender(), state.contender);
+  sample.contender_priority(state.contender_priority);
+  sample.contender_takes_over_ns(state.contender_takes_over_unix_ns);
   sample.monitoring_only(state.monitoring_only);
   const bool refused = !state.last_refusal.client.empty();
   set_text(sample.last_refused(), state.last_refusal.client);

@@ -72,31 +72,42 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
 }
 
 void RobotLog::look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines) {
-  if (state.owned == owned_ && state.owner == owner_) return;
-  using Loss = control::ControlState::Loss;
-  if (state.owned) {
-    say(kOwnerCame, Level::kInfo, std::string(state.owner.view()) + " has control", now, lines);
-  } else {
-    const std::string who(owner_.view());
-    switch (state.last_loss) {
-      case Loss::kNone:
-      case Loss::kReleased:
-        say(kOwnerWent, Level::kInfo, who + " released control", now, lines);
-        break;
-      case Loss::kLeaseExpired:
-        say(kOwnerWent, Level::kWarning,
-            who + " lost control: its lease was not renewed for " + std::to_string(state.lease_ms) + " ms", now, lines);
-        break;
-      case Loss::kLinkLost:
-        say(kOwnerWent, Level::kWarning, who + " lost control: the link to the robot is gone", now, lines);
-        break;
-      case Loss::kShutdown:
-        say(kOwnerWent, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
-        break;
-    }
+  if (state.contender != contender_ && !state.contender.empty()) {
+    say(kContender, Level::kInfo,
+        std::string(state.contender.view()) + " (priority " + std::to_string(state.contender_priority) +
+            ") takes over from " + std::string(state.owner.view()),
+        now, lines);
   }
+  contender_ = state.contender;
+  if (state.owned == owned_ && state.owner == owner_) return;
+  if (owned_) say_who_went(state, now, lines);  // also when the next owner is there already: a take-over
+  if (state.owned) say(kOwnerCame, Level::kInfo, std::string(state.owner.view()) + " has control", now, lines);
   owned_ = state.owned;
   owner_ = state.owner;
+}
+
+void RobotLog::say_who_went(const control::ControlState& state, Time now, std::vector<LogLine>& lines) {
+  using Loss = control::ControlState::Loss;
+  const std::string who(owner_.view());
+  switch (state.last_loss) {
+    case Loss::kNone:
+    case Loss::kReleased:
+      say(kOwnerWent, Level::kInfo, who + " released control", now, lines);
+      break;
+    case Loss::kLeaseExpired:
+      say(kOwnerWent, Level::kWarning,
+          who + " lost control: its lease was not renewed for " + std::to_string(state.lease_ms) + " ms", now, lines);
+      break;
+    case Loss::kLinkLost:
+      say(kOwnerWent, Level::kWarning, who + " lost control: the link to the robot is gone", now, lines);
+      break;
+    case Loss::kShutdown:
+      say(kOwnerWent, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
+      break;
+    case Loss::kTakenOver:
+      say(kOwnerWent, Level::kWarning, who + " lost control: a client of higher priority took over", now, lines);
+      break;
+  }
 }
 
 void RobotLog::look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {

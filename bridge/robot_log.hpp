@@ -42,6 +42,7 @@ class RobotLog {
     kMismatch,
     kOwnerCame,
     kOwnerWent,
+    kContender,
     kError,
     kErrorGone,
     kSafetyStop,
@@ -60,6 +61,7 @@ class RobotLog {
   void say(Event event, LogLine::Level level, std::string text, Time now, std::vector<LogLine>& lines);
   void look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
   void look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines);
+  void say_who_went(const control::ControlState& state, Time now, std::vector<LogLine>& lines);
   void look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
 
   std::string robot_;
@@ -70,7 +72,7 @@ class RobotLog {
   std::uint16_t error_code_ = 0;
   bool stopped_ = false;
   bool owned_ = false;
-  control::ClientName owner_;
+  control::ClientName owner_, contender_;
   LogFacts facts_;
 };
 

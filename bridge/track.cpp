@@ -19,9 +19,10 @@ bool same(const control::ControlState& a, const control::ControlState& b) noexce
     return x.client == y.client && x.command_id == y.command_id && x.state == y.state && x.reason == y.reason;
   };
   return a.owned == b.owned && a.owner == b.owner && a.owner_participant == b.owner_participant &&
-         a.since_unix_ns == b.since_unix_ns && a.lease_ms == b.lease_ms && a.on_loss == b.on_loss &&
-         a.monitoring_only == b.monitoring_only && same_refusal(a.last_refusal, b.last_refusal) &&
-         a.last_owner == b.last_owner && a.last_loss == b.last_loss;
+         a.since_unix_ns == b.since_unix_ns && a.priority == b.priority && a.lease_ms == b.lease_ms &&
+         a.on_loss == b.on_loss && a.contender == b.contender && a.contender_priority == b.contender_priority &&
+         a.contender_takes_over_unix_ns == b.contender_takes_over_unix_ns && a.monitoring_only == b.monitoring_only &&
+         same_refusal(a.last_refusal, b.last_refusal) && a.last_owner == b.last_owner && a.last_loss == b.last_loss;
 }
 
 bool RateGate::due(const TopicConfig& config, bool changed, bool urgent, Time now) noexcept {

@@ -145,6 +145,12 @@ std::string safety(const RobotView& view) {
   return text;
 }
 
+namespace {
+std::string with_priority(const std::string& client, std::uint32_t priority) {
+  return priority == 0 ? client : client + " (priority " + std::to_string(priority) + ")";
+}
+}  // namespace
+
 std::string control_text(const meca500::ControlStatus& s, std::int64_t now_ns) {
   std::string text;
   if (s.monitoring_only()) {
@@ -154,7 +160,13 @@ std::string control_text(const meca500::ControlStatus& s, std::int64_t now_ns) {
     if (s.last_owner().size() != 0) text += "; last " + str(s.last_owner()) + " (" + str(s.last_loss()) + ")";
   } else {
     const double seconds = std::max(0.0, static_cast<double>(now_ns - s.since_ns()) * 1e-9);
-    text = str(s.owner()) + " for " + fixed(seconds, 0, 0) + " s, lease " + std::to_string(s.lease_ms()) + " ms";
+    text = with_priority(str(s.owner()), s.priority()) + " for " + fixed(seconds, 0, 0) + " s, lease " +
+           std::to_string(s.lease_ms()) + " ms";
+    if (s.contender().size() != 0) {
+      const double left = std::max(0.0, static_cast<double>(s.contender_takes_over_ns() - now_ns) * 1e-9);
+      text += "; " + with_priority(str(s.contender()), s.contender_priority()) + " takes over in " + fixed(left, 0, 1) +
+              " s";
+    }
   }
   if (s.last_refused().size() != 0) text += "; refused " + str(s.last_refused()) + ": " + str(s.last_refusal());
   return text;

@@ -93,6 +93,7 @@ void Ledger::answer(const Client& client, const Entry& entry) noexcept {
   r.minimum = entry.detail.minimum;
   r.maximum = entry.detail.maximum;
   r.other = entry.detail.other;
+  r.hint = entry.detail.hint;
   push(r);
 }
 

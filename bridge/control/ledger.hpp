@@ -29,6 +29,7 @@ struct Detail {
   std::uint8_t argument = 0;
   double value = 0, minimum = 0, maximum = 0;
   ClientName other{};
+  ControlHint hint = ControlHint::kNone;
 };
 
 class Ledger {

@@ -123,6 +123,16 @@ enum class Reason : std::uint8_t {
   kDuplicate,
 };
 
+// What a refusal for want of control (kNotOwner) adds to the owner's name.
+enum class ControlHint : std::uint8_t {
+  kNone,
+  kTakeFirst,    // nobody has control, and what was sent does not take it (a velocity stream)
+  kMayTakeOver,  // the client's priority is higher than the owner's: TAKE_CONTROL takes over
+  kContended,    // a client of higher priority is taking over already
+  kWaiting,      // the client itself is taking over; the owner's grace is not over yet
+  kOutranked,    // it was taking over, and a client of still higher priority takes over in its place
+};
+
 struct Receipt {
   ClientName client;
   std::uint64_t command_id = 0;
@@ -134,7 +144,9 @@ struct Receipt {
   std::uint32_t motion_command_id = 0;
   std::uint8_t argument = 0;  // kArgumentRange: index; kArgumentCount: how many came
   double value = 0, minimum = 0, maximum = 0;
-  ClientName other;  // kNotOwner: who has control
+  ClientName other;  // kNotOwner: who has control; then value, minimum, maximum are the priorities of the client, of
+                     // the owner and of who is taking over
+  ControlHint hint = ControlHint::kNone;
 };
 
 struct ControlState {
@@ -142,12 +154,23 @@ struct ControlState {
   ClientName owner;
   ParticipantId owner_participant{};
   std::int64_t since_unix_ns = 0;
+  std::uint32_t priority = 0;  // of the owner
   std::uint32_t lease_ms = 0;
-  LossPolicy on_loss = LossPolicy::kStopMotion;
+  LossPolicy on_loss = LossPolicy::kStopMotion;  // what will happen, whatever the owner asked for
+  ClientName contender;  // of higher priority, takes over when the owner's grace is over; empty: nobody
+  std::uint32_t contender_priority = 0;
+  std::int64_t contender_takes_over_unix_ns = 0;
   bool monitoring_only = false;
   Receipt last_refusal;  // client empty: none yet
   ClientName last_owner;
-  enum class Loss : std::uint8_t { kNone, kReleased, kLeaseExpired, kLinkLost, kShutdown } last_loss = Loss::kNone;
+  enum class Loss : std::uint8_t {
+    kNone,
+    kReleased,
+    kLeaseExpired,
+    kLinkLost,
+    kShutdown,
+    kTakenOver
+  } last_loss = Loss::kNone;
 };
 
 }  // namespace meca::control

@@ -235,6 +235,7 @@ TEST(Mapping, ControlStatusSaysWhoHasControlAndWhoWasRefused) {
   state.owner = std::string_view("plc");
   state.owner_participant = {std::byte{0x01}, std::byte{0x0f}, std::byte{0xa2}};
   state.since_unix_ns = 5;
+  state.priority = 3;
   state.lease_ms = 100;
   state.on_loss = control::LossPolicy::kFinishMotion;
   state.monitoring_only = true;
@@ -244,6 +245,9 @@ TEST(Mapping, ControlStatusSaysWhoHasControlAndWhoWasRefused) {
   state.last_refusal.other = std::string_view("plc");
   state.last_owner = std::string_view("before");
   state.last_loss = control::ControlState::Loss::kLeaseExpired;
+  state.contender = std::string_view("supervisor");
+  state.contender_priority = 10;
+  state.contender_takes_over_unix_ns = 77;
   meca500::ControlStatus sample;
   fill(state, sample);
   EXPECT_TRUE(sample.owned());
@@ -257,11 +261,16 @@ TEST(Mapping, ControlStatusSaysWhoHasControlAndWhoWasRefused) {
   EXPECT_THAT(sample.last_refusal().to_string(), testing::HasSubstr("plc"));
   EXPECT_EQ(sample.last_owner().to_string(), "before");
   EXPECT_EQ(sample.last_loss().to_string(), "lease expired");
+  EXPECT_EQ(sample.priority(), 3U);
+  EXPECT_EQ(sample.contender().to_string(), "supervisor");
+  EXPECT_EQ(sample.contender_priority(), 10U);
+  EXPECT_EQ(sample.contender_takes_over_ns(), 77);
 
   fill(control::ControlState{}, sample);  // a sample used again forgets
   EXPECT_EQ(sample.owner().to_string(), "");
   EXPECT_EQ(sample.owner_participant().to_string(), "");
   EXPECT_EQ(sample.last_refusal().to_string(), "");
+  EXPECT_EQ(sample.contender().to_string(), "");
 }
 
 TEST(Mapping, BridgeStatusCarriesEveryCounterInItsPlace) {

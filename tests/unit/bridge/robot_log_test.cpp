@@ -82,6 +82,24 @@ TEST(RobotLog, OwnersComeAndGoByName) {
   EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: plc lost control: its lease was not renewed for 100 ms"));
 }
 
+TEST(RobotLog, ATakeOverIsToldFromItsAnnouncementToItsEnd) {
+  RobotLog log("arm1");
+  auto record = good();
+  record.control.owned = true;
+  record.control.owner = std::string_view("plc");
+  said(log, record, 0s);
+  record.control.contender = std::string_view("supervisor");
+  record.control.contender_priority = 10;
+  EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: supervisor (priority 10) takes over from plc"));
+  EXPECT_THAT(said(log, record, 1s), IsEmpty());
+  record.control.owner = record.control.contender;
+  record.control.contender = {};
+  record.control.last_loss = control::ControlState::Loss::kTakenOver;
+  EXPECT_THAT(said(log, record, 30s),
+              ElementsAre("arm1: plc lost control: a client of higher priority took over",
+                          "arm1: supervisor has control"));
+}
+
 TEST(RobotLog, ARobotErrorComesWithItsNameAndRemedy) {
   RobotLog log("arm1");
   auto record = good();

@@ -129,6 +129,19 @@ TEST(ControlText, TellsTheOwnerAndForHowLong) {
   EXPECT_EQ(control_text(status, 13'000'000'000), "cell-plc for 12 s, lease 100 ms");
 }
 
+TEST(ControlText, TellsPrioritiesAndWhoTakesOverWhen) {
+  meca500::ControlStatus status;
+  status.owned(true);
+  status.owner("cell-plc");
+  status.priority(1);
+  status.lease_ms(100);
+  status.contender("supervisor");
+  status.contender_priority(10);
+  status.contender_takes_over_ns(400'000'000);
+  EXPECT_EQ(control_text(status, 0),
+            "cell-plc (priority 1) for 0 s, lease 100 ms; supervisor (priority 10) takes over in 0.4 s");
+}
+
 TEST(ControlText, RemembersTheLastOwnerAndTheLastRefusal) {
   meca500::ControlStatus status;
   status.last_owner("cell-plc");
