@@ -46,6 +46,7 @@ CycleSettings settings_of(const RobotConfig& robot, std::endian byte_order) {
   settings.stale_after = 3 * robot.cycle;
   settings.monitoring_only = !robot.control.enabled;
   settings.allow_brakes = robot.control.allow_brakes;
+  settings.clients = robot.control.clients;
   settings.firmware = robot.firmware;
   settings.dynamic_data = robot.dynamic_data;
   return settings;

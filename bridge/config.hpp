@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bridge/control/client_rules.hpp"
 #include "transports/transport.hpp"
 
 namespace meca::bridge {
@@ -62,6 +63,7 @@ struct ControlConfig {
   std::chrono::nanoseconds lease = std::chrono::milliseconds(100);
   std::chrono::nanoseconds velocity_lease = std::chrono::milliseconds(50);
   bool allow_brakes = false;
+  control::ClientRules clients;  // grace, policies and priorities
 };
 
 struct RobotConfig {

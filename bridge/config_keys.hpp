@@ -54,6 +54,12 @@ inline constexpr std::array kKeys{
     Key{"robots[].control", "lease"},
     Key{"robots[].control", "velocity_lease"},
     Key{"robots[].control", "allow_brakes"},
+    Key{"robots[].control", "on_loss"},
+    Key{"robots[].control", "take_over_grace"},
+    Key{"robots[].control", "clients"},
+    Key{"robots[].control.clients[]", "name"},
+    Key{"robots[].control.clients[]", "priority"},
+    Key{"robots[].control.clients[]", "on_loss"},
 };
 
 }  // namespace meca::bridge::config_keys

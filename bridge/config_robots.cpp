@@ -179,10 +179,60 @@ void check_lease(const Section& robot, const Section& control, std::string_view 
                              to_string(kCyclesPerLease * cycle) + " or more");
 }
 
+bool read_loss_rule(const Section& section, control::LossRule& out) {
+  static constexpr std::array<std::string_view, 3> kRules{"client", "stop", "finish"};
+  std::size_t rule = 0;
+  if (!section.choice("on_loss", kRules, rule)) return false;
+  out = static_cast<control::LossRule>(rule);
+  return true;
+}
+
+void read_client(const Section& client, control::ClientRule& out) {
+  client.require("name", "name: cell-plc");
+  std::string name;
+  const bool right =
+      client.text("name", "a client's name of 1 to 63 characters, e.g. cell-plc, or its beginning and a *",
+                  config_values::is_client_pattern, name);
+  if (right) {
+    out.beginning = name.ends_with('*');
+    if (out.beginning) name.pop_back();
+    out.name = std::string_view(name);
+  }
+  client.integer("priority", 0, control::ClientRules::kHighestPriority, out.priority);
+  control::LossRule rule{};
+  if (read_loss_rule(client, rule)) out.on_loss = rule;
+}
+
+void read_clients(const Section& control, control::ClientRules& out) {
+  read_loss_rule(control, out.on_loss);
+  control.duration("take_over_grace", 0ns, 60s, out.take_over_grace);
+  constexpr std::string_view kExpected = "a list of up to 32 clients, e.g. [{name: cell-plc, priority: 10}]";
+  const auto elements = control.list("clients", control::ClientRules::kMost, kExpected);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const std::string path = control.path("clients") + "[" + std::to_string(i) + "]";
+    if (elements[i].kind != yaml::Kind::kMap) {
+      control.report().unexpected(elements[i], path, "a client, e.g. {name: cell-plc, priority: 10}");
+      continue;
+    }
+    const Section client(&elements[i], elements[i].mark, path, "robots[].control.clients[]", control.report());
+    control::ClientRule& rule = out.clients[out.count];
+    read_client(client, rule);
+    const auto same = [&rule](const control::ClientRule& other) {
+      return other.name == rule.name && other.beginning == rule.beginning;
+    };
+    if (std::any_of(out.clients.begin(), out.clients.begin() + out.count, same) && client.find("name") != nullptr) {
+      control.report().error(client.mark("name"), path + ".name",
+                             "a rule for this name is given above; keep one of them");
+    }
+    ++out.count;
+  }
+}
+
 void read_control(const Section& robot, const RobotConfig& config, bool check, ControlConfig& out) {
   const Section control = robot.child("control", "robots[].control");
   control.flag("enabled", out.enabled);
   control.flag("allow_brakes", out.allow_brakes);
+  read_clients(control, out.clients);
   bool lease_right = control.duration("lease", 1ms, 60s, out.lease) || control.find("lease") == nullptr;
   bool velocity_right =
       control.duration("velocity_lease", 1ms, 60s, out.velocity_lease) || control.find("velocity_lease") == nullptr;

@@ -126,6 +126,12 @@ bool is_robot_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return is_alphanumeric(c) || c == '_' || c == '-'; });
 }
 
+bool is_client_pattern(std::string_view text) {
+  if (text.empty() || text.size() > 63 || text.find('*') < text.size() - 1) return false;
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
 bool is_interface_name(std::string_view text) {
   return !text.empty() && text.size() <= 15 && text != "." && text != ".." &&
          std::none_of(text.begin(), text.end(),

@@ -26,6 +26,7 @@ std::optional<std::int64_t> integer(std::string_view text);  // decimal, optiona
 bool is_ipv4(std::string_view text);
 bool is_host_name(std::string_view text);       // RFC 1123
 bool is_robot_name(std::string_view text);      // 1..63 bytes of A-Z a-z 0-9 _ -
+bool is_client_pattern(std::string_view text);  // 1..63 printable bytes; '*' only as the last
 bool is_interface_name(std::string_view text);  // 1..15 bytes, no '/' and no space (Linux)
 // PROFINET NameOfStation: labels of a-z 0-9 - joined by dots, 1..240 bytes, a label 1..63; not an IP address.
 bool is_station_name(std::string_view text);

@@ -15,7 +15,7 @@ Time lost_after(const CycleSettings& s) noexcept { return std::max(s.lease, 20 *
 
 control::ControllerSettings controller_settings(const CycleSettings& s) {
   return {s.lease,           s.velocity_lease, s.action_timeout, s.acknowledge_timeout,
-          s.monitoring_only, s.allow_brakes,   s.dynamic_data};
+          s.monitoring_only, s.allow_brakes,   s.dynamic_data,   s.clients};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "bridge/control/client_rules.hpp"
 #include "bridge/control/messages.hpp"
 #include "transports/image/codec.hpp"
 #include "transports/image/image.hpp"
@@ -36,6 +37,7 @@ struct CycleSettings {
   Time acknowledge_timeout = std::chrono::seconds(1);   // MoveID echo
   bool monitoring_only = false;                         // this bridge never commands this robot
   bool allow_brakes = false;
+  control::ClientRules clients{};                                  // priorities, policies
   transports::FirmwareVersion firmware{};                          // expected; all 0 = auto
   std::array<std::uint32_t, image::kDynamicSlots> dynamic_data{};  // types to ask for; 0 = automatic
 };

@@ -53,6 +53,7 @@ class Actions {
   // The stop image's Pause: held until somebody resumes. On firmware 9 letting go of it clears the queue first.
   // Ends a Resume that is under way or waiting.
   void hold_pause(Reason reason) noexcept;
+  bool pausing() const noexcept { return pause_; }  // PauseMotion is in the image
   bool pause_held_by_stop() const noexcept { return pause_ && pause_by_stop_; }
   // An owner that released the brakes is gone: engage them again.
   void engage_brakes() noexcept;

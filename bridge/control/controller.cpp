@@ -12,11 +12,30 @@ bool refuses_control(Reason reason) noexcept {
          reason == Reason::kFirmwareUnknown || reason == Reason::kShutdown;
 }
 
+// What ControlStatus shows of a refusal.
+Receipt refused(const ClientName& client, std::uint64_t command_id, CommandKind kind, std::uint32_t motion_command_id,
+                const Refusal& refusal) noexcept {
+  const Detail& detail = refusal.detail;
+  Receipt r;
+  r.client = client;
+  r.command_id = command_id;
+  r.state = ReceiptState::kRejected;
+  r.reason = refusal.reason;
+  r.kind = kind;
+  r.motion_command_id = motion_command_id;
+  r.value = detail.value;
+  r.minimum = detail.minimum;
+  r.maximum = detail.maximum;
+  r.other = detail.other;
+  r.hint = detail.hint;
+  return r;
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerSettings& s) noexcept
     : settings_(s),
-      arbiter_(s.lease),
+      arbiter_(s.lease, s.clients),
       actions_(ledger_, {s.action_timeout, s.allow_brakes, s.dynamic_data}),
       sequencer_(ledger_, s.acknowledge_timeout),
       velocity_(s.velocity_lease),
@@ -42,6 +61,7 @@ void Controller::step(std::span<const Request> requests, const View& view, LinkF
     }
   }
   if (arbiter_.expired(view.now)) lose_owner(ControlState::Loss::kLeaseExpired, view);
+  follow_contender(view);
   if (seeded_) advance(view);
 }
 
@@ -53,9 +73,9 @@ void Controller::follow_link(const View& view, LinkFacts link) noexcept {
       had_link_ = seeded_ = false;
       link_lost_at_ = view.now;
       const bool busy = robot_may_move(view) || stop_.active();
-      stop_on_return_ =
-          busy && (!arbiter_.owned() || arbiter_.state().on_loss == LossPolicy::kStopMotion) && !finishing_;
+      stop_on_return_ = busy && (!arbiter_.owned() || loss_stops(view)) && !finishing_;
       arbiter_.drop(ControlState::Loss::kLinkLost, true);
+      end_contest(Reason::kLinkLost);
       sequencer_.link_lost();
       actions_.end_all(Reason::kLinkLost);
       velocity_.reset();
@@ -115,6 +135,7 @@ void Controller::follow_monitoring_mode(const View& view) noexcept {
   arbiter_.set_monitoring_only(monitoring_only_);
   if (monitoring_only_ && !was) {
     arbiter_.drop(ControlState::Loss::kLinkLost, true);
+    end_contest(Reason::kMonitoringOnly);
     sequencer_.end_all(ReceiptState::kAborted, Reason::kMonitoringOnly);
     actions_.end_all(Reason::kMonitoringOnly);
     velocity_.reset();
@@ -142,7 +163,8 @@ std::optional<Refusal> Controller::refusal_of_control(const CommandRequest& requ
     case Claim::kFree:
       return std::nullopt;
     case Claim::kForeign:
-      return Refusal{Reason::kNotOwner, {.other = arbiter_.state().owner}};
+      if (request.kind == CommandKind::kTakeControl && arbiter_.may_take_over(request.client)) return std::nullopt;
+      return Refusal{Reason::kNotOwner, arbiter_.explain(request.client, request.participant)};
     case Claim::kMustTake:
       if (request.kind == CommandKind::kTakeControl) return std::nullopt;
       return Refusal{Reason::kNotOwner};
@@ -152,6 +174,8 @@ std::optional<Refusal> Controller::refusal_of_control(const CommandRequest& requ
 
 std::optional<Refusal> Controller::refusal_of_command(const CommandRequest& request, const Ticket& ticket,
                                                       const View& view) noexcept {
+  const bool about_control = request.kind == CommandKind::kTakeControl || request.kind == CommandKind::kReleaseControl;
+  if (about_control) return check_action_arguments(request);  // never for want of room among the owner's actions
   if (request.kind != CommandKind::kMotion) return actions_.check(request, ticket, view);
   if (const auto refusal = check_motion_arguments(request, view.layout, limits_)) return refusal;
   if (const auto refusal = check_motion_state(request, view)) return refusal;
@@ -164,15 +188,8 @@ std::optional<Refusal> Controller::refusal_of_command(const CommandRequest& requ
 void Controller::reject(const CommandRequest& request, const Ticket& ticket, const Refusal& refusal) noexcept {
   ledger_.report(ticket, ReceiptState::kRejected, refusal.reason, refusal.detail);
   if (!refuses_control(refusal.reason)) return;
-  Receipt r;
-  r.client = request.client;
-  r.command_id = request.command_id;
-  r.state = ReceiptState::kRejected;
-  r.reason = refusal.reason;
-  r.kind = request.kind;
-  r.motion_command_id = request.motion_command_id;
-  r.other = refusal.detail.other;
-  arbiter_.remember_refusal(r);
+  arbiter_.remember_refusal(
+      refused(request.client, request.command_id, request.kind, request.motion_command_id, refusal));
 }
 
 void Controller::handle(const CommandRequest& request, const View& view, LinkFacts link) noexcept {
@@ -181,12 +198,41 @@ void Controller::handle(const CommandRequest& request, const View& view, LinkFac
   if (request.kind == CommandKind::kReleaseControl && !arbiter_.owned()) {
     return ledger_.report(*ticket, ReceiptState::kCompleted);  // nothing to give back
   }
+  if (request.kind == CommandKind::kReleaseControl && arbiter_.is_contender(request.client, request.participant)) {
+    end_contest(Reason::kOwnerLost);
+    return ledger_.report(*ticket, ReceiptState::kCompleted);
+  }
   if (const auto refusal = refusal_of_control(request, link)) return reject(request, *ticket, *refusal);
   if (const auto refusal = refusal_of_command(request, *ticket, view)) return reject(request, *ticket, *refusal);
   execute(request, *ticket, view);
 }
 
+// The owner keeps control for its grace; follow_contender() goes on from here.
+void Controller::contend(const CommandRequest& request, const Ticket& ticket, const View& view) noexcept {
+  const ClientName owner = arbiter_.state().owner;
+  if (const auto outranked = arbiter_.contend(request, ticket, view.now, view.unix_ns)) {
+    const Detail detail{.other = request.client, .hint = ControlHint::kOutranked};
+    ledger_.report(*outranked, ReceiptState::kAborted, Reason::kNotOwner, detail);
+  }
+  ledger_.report(ticket, ReceiptState::kAccepted, Reason::kNone, {.other = owner});
+}
+
+void Controller::follow_contender(const View& view) noexcept {
+  if (arbiter_.contender_expired(view.now)) end_contest(Reason::kOwnerLost);
+  if (!arbiter_.contended() || (arbiter_.owned() && !arbiter_.grace_over(view.now))) return;
+  if (arbiter_.owned()) lose_owner(ControlState::Loss::kTakenOver, view);
+  if (sequencer_.handshake_idle()) sequencer_.disarm();  // the next owner starts from an image that asks for nothing
+  const Ticket ticket = arbiter_.succeed(view.unix_ns);
+  finishing_ = false;
+  ledger_.report(ticket, ReceiptState::kCompleted);
+}
+
+void Controller::end_contest(Reason reason) noexcept {
+  if (const auto ticket = arbiter_.withdraw()) ledger_.report(*ticket, ReceiptState::kAborted, reason);
+}
+
 void Controller::execute(const CommandRequest& request, const Ticket& ticket, const View& view) noexcept {
+  if (arbiter_.claim(request.client, request.participant) == Claim::kForeign) return contend(request, ticket, view);
   if (!arbiter_.owned()) {
     arbiter_.take(request.client, request.participant, request.on_loss, view.now, view.unix_ns);
     velocity_.reset();
@@ -236,14 +282,10 @@ void Controller::handle(const VelocityRequest& request, const View& view) noexce
   }
   // A stream has no receipts; ControlStatus names who was refused. A stream never takes control: after an accident it
   // would set the robot moving again by itself.
-  Receipt r;
-  r.client = request.client;
-  r.state = ReceiptState::kRejected;
-  r.reason = shut_down_ ? Reason::kShutdown : Reason::kNotOwner;
-  r.kind = CommandKind::kMotion;
-  r.motion_command_id = velocity_command(request.kind);
-  r.other = arbiter_.state().owner;
-  arbiter_.remember_refusal(r);
+  const Refusal refusal = shut_down_
+                              ? Refusal{Reason::kShutdown}
+                              : Refusal{Reason::kNotOwner, arbiter_.explain(request.client, request.participant)};
+  arbiter_.remember_refusal(refused(request.client, 0, CommandKind::kMotion, velocity_command(request.kind), refusal));
 }
 
 // ---------------------------------------------------------------- how control ends
@@ -270,14 +312,22 @@ void Controller::release(const View& view) noexcept {
     finishing_ = true;
   }
   velocity_.reset();
+  follow_contender(view);  // before anybody else's command of this cycle
+}
+
+// A paused robot has nothing under way that could finish, and the next owner's Resume must not run what a client left
+// that is gone.
+bool Controller::loss_stops(const View& view) const noexcept {
+  return arbiter_.state().on_loss == LossPolicy::kStopMotion || view.in.motion_status.paused || actions_.pausing();
 }
 
 void Controller::lose_owner(ControlState::Loss why, const View& view) noexcept {
-  const bool stops = arbiter_.state().on_loss == LossPolicy::kStopMotion;
-  arbiter_.drop(why, stops);
-  if (stops) {
-    if (view.in.robot_status.activated || view.in.robot_status.busy) stop(Reason::kOwnerLost, view.now);
-  }
+  const bool taken_over = why == ControlState::Loss::kTakenOver;
+  const bool stops = loss_stops(view);
+  arbiter_.drop(why, stops || taken_over);
+  const bool on = view.in.robot_status.activated || view.in.robot_status.busy;
+  // Somebody is there to mind a robot that was taken over: one that stands is left alone, as after a release.
+  if (stops && (taken_over ? robot_may_move(view) : on)) stop(Reason::kOwnerLost, view.now);
   sequencer_.discard_unsent(Reason::kOwnerLost);
   actions_.discard_queued(Reason::kOwnerLost);
   actions_.engage_brakes();
@@ -289,6 +339,7 @@ void Controller::shut_down(const View& view) noexcept {
   if (shut_down_) return;
   shut_down_ = true;
   arbiter_.drop(ControlState::Loss::kShutdown, false);
+  end_contest(Reason::kShutdown);
   actions_.end_all(Reason::kShutdown);
   actions_.engage_brakes();
   sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);

@@ -21,6 +21,7 @@ struct ControllerSettings {
   bool monitoring_only = false;
   bool allow_brakes = false;
   std::array<std::uint32_t, image::kDynamicSlots> dynamic_data{};
+  ClientRules clients{};
 };
 
 // What the cycle knows about the connection in this step.
@@ -56,6 +57,9 @@ class Controller {
   void handle(const CommandRequest& request, const View& view, LinkFacts link) noexcept;
   void handle(const VelocityRequest& request, const View& view) noexcept;
   void execute(const CommandRequest& request, const Ticket& ticket, const View& view) noexcept;
+  void contend(const CommandRequest& request, const Ticket& ticket, const View& view) noexcept;
+  void follow_contender(const View& view) noexcept;
+  void end_contest(Reason reason) noexcept;
   std::optional<Refusal> refusal_of_control(const CommandRequest& request, LinkFacts link) const noexcept;
   std::optional<Refusal> refusal_of_command(const CommandRequest& request, const Ticket& ticket,
                                             const View& view) noexcept;
@@ -66,6 +70,7 @@ class Controller {
   void shut_down(const View& view) noexcept;
   void advance(const View& view) noexcept;
   bool robot_may_move(const View& view) const noexcept;
+  bool loss_stops(const View& view) const noexcept;
   bool velocity_allowed(const View& view) const noexcept;
 
   ControllerSettings settings_;

@@ -131,11 +131,40 @@ std::string unknown_text(const Receipt& r) {
   return "this robot's firmware does not know " + name + " (or variables as its arguments)";
 }
 
+// "'cell-plc' has control of the robot (priority 10, yours is 0)"
+std::string owner_text(const Receipt& r) {
+  std::string text = quoted(r.other) + " has control of the robot";
+  if (r.value != 0 || r.minimum != 0) text += " (priority " + number(r.minimum) + ", yours is " + number(r.value) + ")";
+  return text;
+}
+
 std::string not_owner_text(const Receipt& r) {
+  switch (r.hint) {
+    case ControlHint::kNone:
+      break;
+    case ControlHint::kTakeFirst:
+      return "nobody has control of the robot, and " + subject(r) + " does not take it; take control first";
+    case ControlHint::kMayTakeOver:
+      return owner_text(r) + "; to take over, send TAKE_CONTROL";
+    case ControlHint::kContended:
+      return owner_text(r) + ", and a client of priority " + number(r.maximum) +
+             " is taking over; wait until it releases control";
+    case ControlHint::kWaiting:
+      return owner_text(r) + " until its grace is over; wait for the receipt of your TAKE_CONTROL";
+    case ControlHint::kOutranked:
+      return quoted(r.other) + ", of higher priority, takes over instead; wait until it releases control";
+  }
   if (r.other.empty()) {
     return quoted(r.client) + " lost control of the robot; take control again before commanding it";
   }
-  return quoted(r.other) + " has control of the robot; wait until it releases control";
+  return owner_text(r) + "; wait until it releases control";
+}
+
+std::string owner_lost_text(const Receipt& r) {
+  if (r.kind == CommandKind::kTakeControl) {
+    return "its client gave up, or did not renew its lease while the owner's grace ran";
+  }
+  return "its client lost or released control";
 }
 
 std::string not_allowed_text(const Receipt& r) {
@@ -195,7 +224,7 @@ std::string reason_text(const Receipt& r) {
       return r.state == ReceiptState::kDiscarded ? "the link to the robot was lost before it was executed"
                                                  : "the link to the robot was lost; how far it got is not known";
     case Reason::kOwnerLost:
-      return "its client lost or released control";
+      return owner_lost_text(r);
     case Reason::kCleared:
       return "the motion queue was cleared";
     case Reason::kNotAllowed:
@@ -212,6 +241,8 @@ std::string reason_text(const Receipt& r) {
 std::string state_text(const Receipt& r) {
   switch (r.state) {
     case ReceiptState::kAccepted:
+      if (!r.other.empty())
+        return "taking over accepted: " + quoted(r.other) + " keeps control until its grace is over";
       return subject(r) + " accepted";
     case ReceiptState::kSent:
       return subject(r) + " sent to the robot";

@@ -19,6 +19,7 @@
 namespace {
 
 using namespace meca::bridge;
+namespace control = meca::control;
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
@@ -51,8 +52,8 @@ void collect(const yaml::Node& node, const std::string& section, std::set<std::s
     if (!topic) keys.insert(section + "/" + name);
     std::string below = section.empty() ? name : section + "." + (topic ? "*" : name);
     const yaml::Node& value = node.values[i];
-    if (name == "robots") {
-      for (const yaml::Node& robot : value.values) collect(robot, below + "[]", keys);
+    if (value.kind == yaml::Kind::kSequence) {
+      for (const yaml::Node& element : value.values) collect(element, below + "[]", keys);
     } else {
       collect(value, below, keys);
     }
@@ -153,6 +154,9 @@ TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
   EXPECT_EQ(a.control.lease, b.control.lease);
   EXPECT_EQ(a.control.velocity_lease, b.control.velocity_lease);
   EXPECT_EQ(a.control.allow_brakes, b.control.allow_brakes);
+  EXPECT_EQ(a.control.clients.on_loss, b.control.clients.on_loss);
+  EXPECT_EQ(a.control.clients.take_over_grace, b.control.clients.take_over_grace);
+  EXPECT_EQ(a.control.clients.count, b.control.clients.count);
 }
 
 TEST(SmallestFile, HasTheDefaultsOfTheTopicTable) {
@@ -192,7 +196,14 @@ robots:
     cycle: 500us
     firmware: 11.3.3.12637
     dynamic_data: [40, auto, 10000]
-    control: {enabled: false, lease: 2s, velocity_lease: 1500us, allow_brakes: true}
+    control:
+      enabled: false
+      lease: 2s
+      velocity_lease: 1500us
+      allow_brakes: true
+      on_loss: finish
+      take_over_grace: 0s
+      clients: [{name: "Zelle 7", priority: 100, on_loss: stop}, {name: meca-ctl@*, priority: 1}, {name: "*"}]
   - {name: "2", transport: {type: builtin}, cycle: 10 ms, firmware: auto}
 )",
                                            "all.yaml");
@@ -230,6 +241,19 @@ robots:
   EXPECT_EQ(r.control.lease, 2s);
   EXPECT_EQ(r.control.velocity_lease, 1500us);
   EXPECT_TRUE(r.control.allow_brakes);
+  const control::ClientRules& rules = r.control.clients;
+  EXPECT_EQ(rules.on_loss, control::LossRule::kFinish);
+  EXPECT_EQ(rules.take_over_grace, 0ns);
+  ASSERT_EQ(rules.count, 3U);
+  EXPECT_EQ(rules.clients[0].name.view(), "Zelle 7");
+  EXPECT_FALSE(rules.clients[0].beginning);
+  EXPECT_EQ(rules.clients[0].priority, 100U);
+  EXPECT_EQ(rules.clients[0].on_loss, control::LossRule::kStop);
+  EXPECT_EQ(rules.clients[1].name.view(), "meca-ctl@");
+  EXPECT_TRUE(rules.clients[1].beginning);
+  EXPECT_EQ(rules.clients[1].priority, 1U);
+  EXPECT_FALSE(rules.clients[1].on_loss.has_value());
+  EXPECT_TRUE(rules.clients[2].beginning);
   EXPECT_EQ(c.robots[1].name, "2");
   EXPECT_EQ(c.robots[1].cycle, 10ms);
   EXPECT_EQ(c.robots[1].firmware, meca::transports::FirmwareVersion{});

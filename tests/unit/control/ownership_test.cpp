@@ -153,7 +153,58 @@ TEST(OwnerLoss, lets_queued_motion_finish_when_the_owner_asked_for_it) {
   EXPECT_OUTCOME(b.outcome(id), kCompleted, Reason::kNone);
 }
 
-TEST(OwnerLoss, leaves_motion_that_may_finish_in_a_paused_robot_until_it_is_resumed_or_cleared) {
+// Nothing moves in a paused robot that could finish, and the next owner's Resume must not run a dead client's motion.
+TEST(OwnerLoss, in_a_paused_robot_stops_motion_that_might_have_finished) {
+  for (const Layout layout : {Layout::kFirmware9, Layout::kFirmware11}) {
+    Bench b({}, layout);
+    b.policy = LossPolicy::kFinishMotion;
+    b.connect_ready();
+    b.outcome(kPauseMotion);
+    const auto id = b.move(1);
+    b.steps(5);
+    ASSERT_EQ(b.robot.queued(), 2u) << "the move and the bridge's checkpoint";
+    b.keep_alive = false;
+    EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kOwnerLost);
+    b.client = ClientName("somebody else");
+    b.keep_alive = true;
+    EXPECT_OUTCOME(b.outcome(kTakeControl), kCompleted, Reason::kNone);
+    EXPECT_OUTCOME(b.outcome(kResumeMotion), kCompleted, Reason::kNone);
+    b.steps(50);
+    EXPECT_TRUE(b.robot.executed.empty());
+  }
+}
+
+TEST(OwnerLoss, in_a_robot_that_is_about_to_pause_counts_as_paused) {
+  Bench b;
+  b.policy = LossPolicy::kFinishMotion;
+  b.connect_ready();
+  b.robot.executes = false;
+  const auto id = b.move(1);
+  b.steps(5);
+  b.robot.answers_actions = false;  // Pause is on the wire and not confirmed
+  b.send(kPauseMotion);
+  b.keep_alive = false;
+  b.steps(150);
+  b.robot.answers_actions = true;
+  EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kOwnerLost);
+}
+
+TEST(OwnerLoss, with_the_link_stops_a_paused_robots_motion_when_the_link_is_back) {
+  Bench b;
+  b.policy = LossPolicy::kFinishMotion;
+  b.connect_ready();
+  b.outcome(kPauseMotion);
+  b.move(1);
+  b.steps(5);
+  b.link_up = false;
+  b.steps(10);
+  b.connect();
+  b.steps(50);
+  EXPECT_EQ(b.robot.queued(), 0u);
+}
+
+// A person pauses, gives control back, and somebody goes on later: that is what FINISH_MOTION asks for.
+TEST(OwnerLoss, by_release_leaves_motion_that_may_finish_in_a_paused_robot) {
   for (const CommandKind next : {kResumeMotion, kClearMotion}) {
     Bench b;
     b.policy = LossPolicy::kFinishMotion;
@@ -161,14 +212,66 @@ TEST(OwnerLoss, leaves_motion_that_may_finish_in_a_paused_robot_until_it_is_resu
     b.outcome(kPauseMotion);
     const auto id = b.move(1);
     b.steps(5);
-    b.keep_alive = false;
+    b.outcome(kReleaseControl);
     b.steps(500);
     EXPECT_FALSE(b.terminal(id)) << "the robot still has it";
     b.client = ClientName("somebody else");
-    b.keep_alive = true;
     EXPECT_OUTCOME(b.outcome(next), kCompleted, Reason::kNone);
     EXPECT_EQ(b.outcome(id).state, next == kResumeMotion ? kCompleted : kDiscarded);
   }
+}
+
+struct PolicyCase {
+  LossRule robot;
+  std::optional<LossRule> client;
+  LossPolicy asked, expected;
+};
+
+TEST(OwnerLoss, follows_the_client_the_robots_rule_or_the_rule_for_this_client) {
+  using enum LossRule;
+  using enum LossPolicy;
+  const PolicyCase cases[] = {
+      {kClient, {}, kStopMotion, kStopMotion},        {kClient, {}, kFinishMotion, kFinishMotion},
+      {kStop, {}, kFinishMotion, kStopMotion},        {kFinish, {}, kStopMotion, kFinishMotion},
+      {kClient, kStop, kFinishMotion, kStopMotion},   {kStop, kFinish, kStopMotion, kFinishMotion},
+      {kStop, kClient, kFinishMotion, kFinishMotion}, {kFinish, kStop, kFinishMotion, kStopMotion},
+  };
+  for (const PolicyCase& c : cases) {
+    CycleSettings settings;
+    settings.clients.on_loss = c.robot;
+    settings.clients.clients[0] = {ClientName("cell-"), true, 0, c.client};
+    settings.clients.count = 1;
+    Bench b(settings);
+    b.policy = c.asked;
+    b.connect_ready();
+    b.robot.executes = false;
+    const auto id = b.move(1);
+    b.steps(5);
+    EXPECT_EQ(control(b).on_loss, c.expected) << "ControlStatus shows what will happen";
+    b.keep_alive = false;
+    b.steps(150);
+    EXPECT_EQ(b.out.motion_control.pause_motion, c.expected == kStopMotion);
+    b.robot.executes = true;
+    EXPECT_EQ(b.outcome(id).state, c.expected == kStopMotion ? kDiscarded : kCompleted);
+  }
+}
+
+TEST(OwnerLoss, of_several_clients_is_remembered_until_each_takes_control_again) {
+  Bench b;
+  b.connect();
+  b.keep_alive = false;
+  const char* names[] = {"one", "two", "three"};
+  for (int i = 0; i < 3; ++i) {
+    b.pending.push_back(from(b, names[i], 2 + i, kTakeControl, 1));
+    b.steps(150);
+    ASSERT_EQ(control(b).last_owner.view(), names[i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    b.pending.push_back(from(b, names[i], 2 + i, kActivate, 2));
+    b.step();
+    EXPECT_OUTCOME(b.receipts.back(), kRejected, Reason::kNotOwner);
+  }
+  EXPECT_FALSE(control(b).owned);
 }
 
 TEST(OwnerLoss, discards_what_was_not_sent_yet_even_when_motion_may_finish) {
