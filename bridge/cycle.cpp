@@ -128,4 +128,6 @@ void Cycle::step(std::span<const control::Request> requests, transports::Exchang
   result.receipt_count = s.controller.ledger().drain(result.receipts);
 }
 
+bool Cycle::finished() const noexcept { return state_->controller.finished(); }
+
 }  // namespace meca::bridge

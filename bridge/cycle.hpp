@@ -86,6 +86,10 @@ class Cycle {
   void step(std::span<const control::Request> requests, transports::Exchange& exchange, Stamp stamp,
             StepResult& result) noexcept;
 
+  // After a ShutdownRequest: the robot is stopped, its queue is cleared, and every receipt has been handed out. A
+  // second ShutdownRequest ends what still waits.
+  bool finished() const noexcept;
+
   // How many requests step() will take without filling `StepResult::receipts`: the loop hands over at most this many.
   static constexpr std::size_t kMaxRequests = 32;
 

@@ -8,9 +8,11 @@
 namespace meca::bridge {
 namespace {
 
-// The stop image is sent at least so often, and not much longer than this, before the good-bye.
+// The stop image is sent at least so often, and at least so long, before the good-bye; and so long at most, because the
+// bridge promises to be gone within 2 s.
 constexpr int kStopCyclesAtLeast = 3;
 constexpr Time kStopTime = std::chrono::milliseconds(50);
+constexpr Time kStopPatience = std::chrono::milliseconds(1500);
 
 Time to_time(const timespec& t) { return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec); }
 
@@ -44,18 +46,24 @@ BusGroup::BusGroup(std::vector<LoopBus> buses) {
   }
 }
 
-void BusGroup::run(Stamp stamp, bool shutdown) noexcept {
+void BusGroup::run(Stamp stamp, Ending ending) noexcept {
   for (auto& bus : buses_) {
     bus.transport->exchange(stamp.now, bus.exchanges);
-    for (std::size_t i = 0; i < bus.robots.size(); ++i) step(bus.robots[i], bus.exchanges[i], stamp, shutdown);
+    for (std::size_t i = 0; i < bus.robots.size(); ++i) step(bus.robots[i], bus.exchanges[i], stamp, ending);
   }
 }
 
-std::size_t BusGroup::take_requests(Robot& robot, bool shutdown) noexcept {
+bool BusGroup::finished() const noexcept {
+  return std::ranges::all_of(buses_, [](const Bus& bus) {
+    return std::ranges::all_of(bus.robots, [](const Robot& robot) { return robot.cycle.finished(); });
+  });
+}
+
+std::size_t BusGroup::take_requests(Robot& robot, Ending ending) noexcept {
   std::size_t count = 0;
-  if (shutdown && !robot.told_to_stop) {
+  if (ending != robot.told) {
     requests_[count++] = control::ShutdownRequest{};
-    robot.told_to_stop = true;
+    robot.told = ending;
   }
   auto& channel = *robot.channel;
   const std::size_t room = channel.receipts.capacity() - channel.receipts.size();
@@ -69,8 +77,8 @@ std::size_t BusGroup::take_requests(Robot& robot, bool shutdown) noexcept {
   return count;
 }
 
-void BusGroup::step(Robot& robot, transports::Exchange& exchange, Stamp stamp, bool shutdown) noexcept {
-  const std::size_t requests = take_requests(robot, shutdown);
+void BusGroup::step(Robot& robot, transports::Exchange& exchange, Stamp stamp, Ending ending) noexcept {
+  const std::size_t requests = take_requests(robot, ending);
   StepResult& result = *robot.result;
   result.receipt_count = 0;
   robot.cycle.step({requests_.data(), requests}, exchange, stamp, result);
@@ -137,13 +145,15 @@ void Loop::share_pace(const PaceFacts& facts) noexcept {
 void Loop::run(std::promise<std::vector<std::string>> ready) {
   ready.set_value(make_thread_realtime(realtime_));
   Pacer pacer(cycle_, monotonic() + cycle_);
+  using Ending = BusGroup::Ending;
   const auto stop_cycles = std::max<std::int64_t>(kStopCyclesAtLeast, kStopTime / cycle_);
-  for (std::int64_t stopping = 0; stopping < stop_cycles;) {
+  const auto patience = std::max<std::int64_t>(kStopCyclesAtLeast, kStopPatience / cycle_);
+  Ending ending = Ending::kNone;
+  for (std::int64_t stopping = 0; ending != Ending::kGiveUp && !(stopping >= stop_cycles && group_.finished());) {
     sleep_until(pacer.deadline());
     pacer.woke(monotonic());
-    const bool shutdown = stop_requested_.load();
-    stopping += shutdown;
-    group_.run(stamp(), shutdown);
+    if (stop_requested_.load()) ending = ++stopping < patience ? Ending::kStop : Ending::kGiveUp;
+    group_.run(stamp(), ending);
     wakeup_.notify();
     pacer.done(monotonic());
     share_pace(pacer.facts());

@@ -35,8 +35,11 @@ class BusGroup {
  public:
   explicit BusGroup(std::vector<LoopBus> buses);
 
-  // Exchanges every bus, steps every robot. `shutdown`: every Cycle is told to send the stop image.
-  void run(Stamp stamp, bool shutdown) noexcept;
+  enum class Ending : std::uint8_t { kNone, kStop, kGiveUp };
+  // Exchanges every bus, steps every robot. kStop: every Cycle is told to stop its robot; kGiveUp: to wait for nothing.
+  void run(Stamp stamp, Ending ending) noexcept;
+  // After kStop: every robot has stopped and every command has its end.
+  bool finished() const noexcept;
 
   // The orderly good-bye; afterwards every robot's last record says that nobody is connected any more.
   void close(Stamp stamp) noexcept;
@@ -47,15 +50,15 @@ class BusGroup {
     Cycle cycle;
     RobotChannel* channel;
     std::unique_ptr<StepResult> result = std::make_unique<StepResult>();
-    bool told_to_stop = false;
+    Ending told = Ending::kNone;
   };
   struct Bus {
     std::unique_ptr<transports::Transport> transport;
     std::vector<Robot> robots;
     std::vector<transports::Exchange> exchanges;
   };
-  void step(Robot& robot, transports::Exchange& exchange, Stamp stamp, bool shutdown) noexcept;
-  std::size_t take_requests(Robot& robot, bool shutdown) noexcept;
+  void step(Robot& robot, transports::Exchange& exchange, Stamp stamp, Ending ending) noexcept;
+  std::size_t take_requests(Robot& robot, Ending ending) noexcept;
 
   std::vector<Bus> buses_;
   std::array<control::Request, Cycle::kMaxRequests> requests_;  // of the robot being stepped
@@ -72,8 +75,8 @@ class Loop {
   // Starts the thread; returns when it has asked for its real-time properties, with what it got.
   std::vector<std::string> start();
 
-  // Asks for the stop image, a few more cycles, and the transports' good-bye. Does not wait: several loops stop at
-  // once.
+  // Asks for the stop image, then time to clear the queues and to end the commands, at most 1.5 s, then the transports'
+  // good-bye. Does not wait: several loops stop at once.
   void request_stop() noexcept { stop_requested_.store(true); }
   void join();
 

@@ -36,11 +36,12 @@ const Actions::Action* Actions::running(CommandKind kind) const noexcept {
   return nullptr;
 }
 
-// Nothing of its kind of turn is in front of it.
+// Nothing of its kind of turn is in front of it. Resume waits for the urgent ones too: it is what they prevent.
 bool Actions::may_start(const Action& action) const noexcept {
   if (urgent(action.ticket.kind)) return true;
+  const bool resume = action.ticket.kind == CommandKind::kResumeMotion;
   for (std::size_t i = 0; i < count_ && &actions_[i] != &action; ++i) {
-    if (!urgent(actions_[i].ticket.kind)) return false;
+    if (resume || !urgent(actions_[i].ticket.kind)) return false;
   }
   return true;
 }
@@ -119,10 +120,13 @@ void Actions::enter(Action& a, Phase phase, const View& view) noexcept {
   a.settle = confirmed(a, view);
 }
 
-void Actions::start(Action& a, const View& view) noexcept {
+void Actions::start(Action& a, const View& view, bool unproved) noexcept {
   ledger_.report(a.ticket, ReceiptState::kSent);
   a.started = view.now;
-  enter(a, Phase::kSent, view);
+  const bool ends_motion = a.ticket.kind == CommandKind::kClearMotion || a.ticket.kind == CommandKind::kDeactivate;
+  a.pauses = ends_motion && unproved;
+  a.rest.restart(view.now);
+  enter(a, a.pauses ? Phase::kRest : Phase::kSent, view);
   switch (a.ticket.kind) {
     case CommandKind::kPauseMotion:
       if (!pause_) pause_by_stop_ = false;
@@ -172,6 +176,10 @@ Actions::Verdict Actions::step(Action& a, const View& view) noexcept {
   if (!view.fresh) return Verdict::kGoOn;
   ++a.images;
   if (a.ticket.kind == CommandKind::kResumeMotion) return step_resume(a, view);
+  if (a.phase == Phase::kRest) {
+    if (a.rest.reached(view)) enter(a, Phase::kSent, view);
+    return Verdict::kGoOn;
+  }
   if (!confirmed(a, view) || (a.settle && a.images < kSettleImages)) return Verdict::kGoOn;
   return Verdict::kDone;
 }
@@ -201,6 +209,7 @@ Actions::Verdict Actions::step_resume(Action& a, const View& view) noexcept {
     case Phase::kRelease:
       return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
     case Phase::kQueued:
+    case Phase::kRest:
     case Phase::kSent:
       return Verdict::kGoOn;
   }
@@ -268,7 +277,7 @@ void Actions::revert(const Action& a) noexcept {
   }
 }
 
-Actions::Events Actions::advance(const View& view, bool hold) noexcept {
+Actions::Events Actions::advance(const View& view, bool hold, bool unproved) noexcept {
   Events events;
   if (view.fresh && brakes_returning_ && (view.in.robot_status.brakes_engaged || view.in.robot_status.activated)) {
     brakes_returning_ = brakes_gate_ = brakes_engaged_ = false;
@@ -295,7 +304,7 @@ Actions::Events Actions::advance(const View& view, bool hold) noexcept {
         remove(i);
         continue;
       }
-      start(a, view);
+      start(a, view, unproved);
       events.clear_started |= kind == CommandKind::kClearMotion;
       events.deactivate_started |= kind == CommandKind::kDeactivate;
       ++i;
@@ -352,21 +361,31 @@ void Actions::engage_brakes() noexcept {
   brakes_engaged_ = brakes_returning_ = true;
 }
 
+bool Actions::pausing() const noexcept {
+  return pause_ || std::any_of(actions_.begin(), actions_.begin() + count_,
+                               [](const Action& a) { return a.pauses && a.phase != Phase::kQueued; });
+}
+
+bool Actions::sent(CommandKind kind) const noexcept {
+  const Action* action = running(kind);
+  return action && action->phase != Phase::kRest;
+}
+
 bool Actions::clearing() const noexcept {
   const Action* resume = running(CommandKind::kResumeMotion);
   return running(CommandKind::kClearMotion) || (resume && resume->phase == Phase::kClearFirst);
 }
 
 void Actions::write(image::Outputs& out) const noexcept {
-  out.robot_control.deactivate = running(CommandKind::kDeactivate) != nullptr;
+  out.robot_control.deactivate = sent(CommandKind::kDeactivate);
   out.robot_control.activate = linger_activate_ || running(CommandKind::kActivate);
   out.robot_control.home = linger_home_ || running(CommandKind::kHome);
   out.robot_control.reset_error = running(CommandKind::kResetError) != nullptr;
   out.robot_control.sim_mode = sim_mode_;
   out.robot_control.recovery_mode = recovery_mode_;
-  out.motion_control.pause_motion = pause_;
-  out.motion_control.clear_motion = clearing();
   const Action* resume = running(CommandKind::kResumeMotion);
+  out.motion_control.pause_motion = pausing();
+  out.motion_control.clear_motion = sent(CommandKind::kClearMotion) || (resume && resume->phase == Phase::kClearFirst);
   // On firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset.
   const bool reset_p_stop = resume && resume->phase == Phase::kRelease && resume->reset_p_stop;
   out.motion_control.resume_motion = (resume && resume->phase == Phase::kRaise) || reset_p_stop;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "bridge/control/ledger.hpp"
+#include "bridge/control/stop_sequence.hpp"
 #include "bridge/control/validation.hpp"
 #include "bridge/control/view.hpp"
 
@@ -43,7 +44,9 @@ class Actions {
   void accept(const CommandRequest& request, const Ticket& ticket, const View& view, bool nothing_queued) noexcept;
 
   // `hold`: a stop sequence is under way; only Pause, Clear and Deactivate go on.
-  Events advance(const View& view, bool hold) noexcept;
+  // `unproved`: of what the robot has, something's end is not known; Clear and Deactivate pause the arm first and wait
+  // until it is at rest, because they wipe out what could tell.
+  Events advance(const View& view, bool hold, bool unproved) noexcept;
 
   // All actions end: running ones ABORTED, queued ones DISCARDED.
   void end_all(Reason reason) noexcept;
@@ -58,14 +61,15 @@ class Actions {
   // An owner that released the brakes is gone: engage them again.
   void engage_brakes() noexcept;
 
-  bool clearing() const noexcept;  // ClearMotion is in the image: the robot takes no commands
+  bool clearing() const noexcept;  // ClearMotion is in the image, or about to be: the robot is to take no commands
+  bool pausing() const noexcept;   // PauseMotion is in the image
   bool deactivating() const noexcept { return running(CommandKind::kDeactivate) != nullptr; }
   void write(image::Outputs& out) const noexcept;
   const std::array<std::uint32_t, image::kDynamicSlots>& dynamic_data() const noexcept { return dynamic_data_; }
 
  private:
-  // Resume walks through these; the other actions know kSent only.
-  enum class Phase : std::uint8_t { kQueued, kSent, kLowerLevels, kClearFirst, kRaise, kRelease };
+  // Resume walks through the later ones; Clear and Deactivate may rest first; the other actions know kSent only.
+  enum class Phase : std::uint8_t { kQueued, kRest, kSent, kLowerLevels, kClearFirst, kRaise, kRelease };
   struct Action {
     Ticket ticket;
     Phase phase = Phase::kQueued;
@@ -73,6 +77,8 @@ class Actions {
     std::uint8_t slot = 0;  // dynamic data
     std::uint32_t type = 0, previous_type = 0;
     Time started{};
+    Rest rest;
+    bool pauses = false;        // until it is done: it rested
     int images = 0;             // fresh images since the phase began
     bool reset_p_stop = false;  // firmware 9
     bool settle = false;        // the confirming bit stood already: believe it only after some images
@@ -86,7 +92,7 @@ class Actions {
   bool already_done(const Action& action, const View& view, bool nothing_queued) const noexcept;
   bool confirmed(const Action& action, const View& view) const noexcept;
   std::optional<Refusal> failed(const Action& action, const View& view) const noexcept;
-  void start(Action& action, const View& view) noexcept;
+  void start(Action& action, const View& view, bool unproved) noexcept;
   void enter(Action& action, Phase phase, const View& view) noexcept;
   Verdict step(Action& action, const View& view) noexcept;
   void let_go(Action& action, const View& view) noexcept;
@@ -96,6 +102,7 @@ class Actions {
   void overtake(bool deactivate, Reason reason) noexcept;
   void remove(std::size_t index) noexcept;
   const Action* running(CommandKind kind) const noexcept;
+  bool sent(CommandKind kind) const noexcept;  // its bit is in the image
 
   Ledger& ledger_;
   Settings settings_;

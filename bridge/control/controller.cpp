@@ -83,6 +83,7 @@ void Controller::follow_link(const View& view, LinkFacts link) noexcept {
       limits_.forget();
       finishing_ = false;
       blind_ = true;
+      if (shut_down_) sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);
       if (stop_on_return_) actions_.hold_pause(Reason::kLinkLost);
     } else if (!sequencer_.idle() && view.now - link_lost_at_ > kResolvePatience) {
       sequencer_.give_up_unresolved();
@@ -309,6 +310,7 @@ void Controller::release(const View& view) noexcept {
     stop(Reason::kOwnerLost, view.now);
   } else {
     sequencer_.discard_unsent(Reason::kOwnerLost);
+    sequencer_.hold_proofs();
     finishing_ = true;
   }
   velocity_.reset();
@@ -329,23 +331,31 @@ void Controller::lose_owner(ControlState::Loss why, const View& view) noexcept {
   // Somebody is there to mind a robot that was taken over: one that stands is left alone, as after a release.
   if (stops && (taken_over ? robot_may_move(view) : on)) stop(Reason::kOwnerLost, view.now);
   sequencer_.discard_unsent(Reason::kOwnerLost);
+  sequencer_.hold_proofs();
   actions_.discard_queued(Reason::kOwnerLost);
   actions_.engage_brakes();
   velocity_.reset();
   finishing_ = !stops;
 }
 
+// The queue is cleared too: whoever resumes the robot later must not start what this life of the bridge left behind.
+// Asked a second time, it waits for nothing any more.
 void Controller::shut_down(const View& view) noexcept {
-  if (shut_down_) return;
+  if (shut_down_) {
+    stop_.cancel();
+    return sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);
+  }
   shut_down_ = true;
   arbiter_.drop(ControlState::Loss::kShutdown, false);
   end_contest(Reason::kShutdown);
   actions_.end_all(Reason::kShutdown);
   actions_.engage_brakes();
-  sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);
   velocity_.reset();
-  stop_.cancel();
-  if (view.in.robot_status.activated || view.in.robot_status.busy) actions_.hold_pause(Reason::kShutdown);
+  if (seeded_ && (view.in.robot_status.activated || view.in.robot_status.busy)) {
+    stop(Reason::kShutdown, view.now);
+  } else {
+    sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);
+  }
 }
 
 // ---------------------------------------------------------------- what to do now
@@ -358,12 +368,12 @@ bool Controller::velocity_allowed(const View& view) const noexcept {
 }
 
 void Controller::advance(const View& view) noexcept {
-  const StopSequence::Progress progress = stop_.advance(view);
+  const StopSequence::Progress progress = stop_.advance(view, sequencer_.unproved());
   if (progress != StopSequence::Progress::kNone) {
     const bool cleared = progress == StopSequence::Progress::kCleared;
     sequencer_.end_all(cleared ? ReceiptState::kDiscarded : ReceiptState::kAborted, stop_.reason());
   }
-  const Actions::Events events = actions_.advance(view, stop_.active());
+  const Actions::Events events = actions_.advance(view, stop_.active(), sequencer_.unproved());
   if (events.clear_started) sequencer_.discard_unsent(Reason::kCleared);
   if (events.clear_confirmed && !stop_.active()) sequencer_.end_all(ReceiptState::kDiscarded, Reason::kCleared);
   if (events.deactivate_started) sequencer_.discard_unsent(Reason::kNotActivated);
@@ -372,7 +382,10 @@ void Controller::advance(const View& view) noexcept {
   // With SetPoint up a command whose frame was lost would be taken from the very image that empties the queue, and a
   // checkpoint among them would prove what was just dropped.
   if (dropping) sequencer_.disarm();
-  sequencer_.advance(view, dropping || actions_.pause_held_by_stop());
+  const bool pause_rises = actions_.pausing() && !was_pausing_;
+  was_pausing_ = actions_.pausing();
+  if (dropping || pause_rises) sequencer_.pause_rises();
+  sequencer_.advance(view, dropping || pause_rises || actions_.pause_held_by_stop());
   if (!arbiter_.owned() && sequencer_.handshake_idle()) sequencer_.disarm();
   velocity_.advance(view, velocity_allowed(view));
   if (velocity_.active()) sequencer_.stand_aside();

@@ -47,6 +47,9 @@ class Controller {
     return actions_.dynamic_data();
   }
 
+  // After a ShutdownRequest: stopped, and every command has its end.
+  bool finished() const noexcept { return shut_down_ && !stop_.active() && sequencer_.idle() && ledger_.drained(); }
+
   const ControlState& state() const noexcept { return arbiter_.state(); }
   Ledger& ledger() noexcept { return ledger_; }
 
@@ -89,6 +92,7 @@ class Controller {
   bool finishing_ = false;       // nobody has control, but queued motion is left to finish
   bool in_safety_stop_ = false;
   bool shut_down_ = false;
+  bool was_pausing_ = false;
   Time link_lost_at_{};
 };
 

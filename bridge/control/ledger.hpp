@@ -48,6 +48,8 @@ class Ledger {
   // Hands out the oldest receipts, at most as many as fit; the rest waits for the next call.
   std::size_t drain(std::span<Receipt> out) noexcept;
 
+  bool drained() const noexcept { return pending_.empty(); }
+
   const ClientName& name(const Ticket& ticket) const noexcept { return clients_[ticket.client].name; }
   std::uint64_t received() const noexcept { return received_; }
   std::uint64_t rejected() const noexcept { return rejected_; }

@@ -1,5 +1,7 @@
 #include "bridge/control/move_sequencer.hpp"
 
+#include <algorithm>
+
 namespace meca::control {
 namespace {
 
@@ -25,14 +27,16 @@ void MoveSequencer::seed(const View& view) noexcept {
   if (flight_) {
     if (echo == move_id_) {
       acknowledged();
+    } else if (flight_->is_checkpoint) {
+      checkpoint_due_ = flight_->motion.ticket;
+      flight_.reset();
     } else {
-      ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, Reason::kLinkLost);
+      ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, Reason::kLinkLost);  // the robot never got it
       flight_.reset();
     }
   }
-  // Its checkpoint was never sent, so its end cannot be seen any more.
-  if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kAborted, Reason::kLinkLost);
-  checkpoint_due_.reset();
+  if (withdrawn_) resolve_withdrawn(echo == move_id_);
+  proofs_wait_ = true;
   if (seeded_) {
     reached(view);
   } else {
@@ -51,6 +55,7 @@ void MoveSequencer::seed(const View& view) noexcept {
   arguments_ = {};
   use_variables_ = armed_ = withdrawing_ = false;
   fresh_since_echo_ = kSettleImages;
+  idle_images_ = rest_images_ = 0;
 }
 
 std::uint16_t MoveSequencer::next_id(std::uint16_t echo) const noexcept {
@@ -65,9 +70,12 @@ void MoveSequencer::observe(const View& view) noexcept {
   if (view.fresh) {
     const std::uint16_t echo = view.in.motion_status.move_id;
     if (fresh_since_echo_ < kSettleImages) ++fresh_since_echo_;
+    const bool resting = view.in.motion_status.paused && view.in.motion_status.eom;
+    rest_images_ = resting ? std::min(rest_images_ + 1, kRestImages + 1) : 0;
     if (flight_ && echo == move_id_) acknowledged();
     if (withdrawing_ && (echo == move_id_ || ++withdrawn_images_ > kSettleImages)) {
       withdrawing_ = false;
+      if (withdrawn_) resolve_withdrawn(echo == move_id_);
       move_id_ = echo;  // with SetPoint 0 the robot does not look at it
     }
     reached(view);
@@ -143,10 +151,36 @@ void MoveSequencer::reached(const View& view) noexcept {
   }
   // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).
   if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) discard_through(awaiting_.size(), view);
-  const bool empty = m.eob && m.eom && m.fifo_space >= kWholeQueue && !m.cleared && !m.paused;
-  const bool hidden = empty && !flight_ && !awaiting_.empty() && !own_checkpoint(m.checkpoint_reached);
-  idle_images_ = hidden ? idle_images_ + 1 : 0;
-  if (idle_images_ > kIdleProof) complete_through(awaiting_.size());
+  prove_by_rest(m);
+}
+
+// At rest, nothing queued, nothing begun: everything echoed was executed. With one of our checkpoints outstanding that
+// holds only where a client's checkpoint may hide it.
+void MoveSequencer::prove_by_rest(const image::MotionStatus& m) noexcept {
+  const bool empty = m.eob && m.eom && m.fifo_space >= kWholeQueue && !m.cleared;
+  const bool open = checkpoint_due_ || !awaiting_.empty();
+  const bool believable = awaiting_.empty() || !own_checkpoint(m.checkpoint_reached);
+  const bool quiet = !flight_ && !withdrawing_ && fresh_since_echo_ >= kSettleImages;
+  idle_images_ = empty && open && believable && quiet ? idle_images_ + 1 : 0;
+  if (idle_images_ <= (m.paused ? kRestImages / 2 : kIdleProof)) return;
+  complete_through(awaiting_.size());
+  if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kCompleted);
+  checkpoint_due_.reset();
+}
+
+void MoveSequencer::resolve_withdrawn(bool taken) noexcept {
+  if (taken) {
+    awaiting_.push(*withdrawn_);
+  } else {
+    checkpoint_due_ = withdrawn_->ticket;
+  }
+  withdrawn_.reset();
+}
+
+void MoveSequencer::pause_rises() noexcept {
+  if (!flight_ || !flight_->is_checkpoint) return;
+  withdrawn_ = Awaited{flight_->motion.ticket, flight_->checkpoint};
+  withdraw();
 }
 
 void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& motion, bool is_checkpoint) noexcept {
@@ -160,8 +194,9 @@ void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& m
 
 void MoveSequencer::advance(const View& view, bool hold) noexcept {
   if (flight_ || withdrawing_ || hold || !view.fresh || view.in.motion_status.fifo_space == 0) return;
+  if (view.in.motion_status.paused && rest_images_ <= kRestImages) return;
   if (checkpoint_due_) {
-    if (awaiting_.full()) return;
+    if (awaiting_.full() || proofs_wait_) return;
     Motion checkpoint;
     checkpoint.ticket = *checkpoint_due_;
     checkpoint.arguments[0] = static_cast<float>(next_checkpoint_);
@@ -194,6 +229,8 @@ void MoveSequencer::end_all(ReceiptState sent, Reason reason, std::uint16_t robo
   for (; !awaiting_.empty(); awaiting_.pop()) ledger_.report(awaiting_.front().ticket, sent, reason, detail);
   if (checkpoint_due_) ledger_.report(*checkpoint_due_, sent, reason, detail);
   checkpoint_due_.reset();
+  if (withdrawn_) ledger_.report(withdrawn_->ticket, sent, reason, detail);
+  withdrawn_.reset();
   if (flight_) {
     ledger_.report(flight_->motion.ticket, sent, reason, detail);
     withdraw();
@@ -210,6 +247,8 @@ void MoveSequencer::end_motion(Reason reason) noexcept {
   }
   if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kAborted, reason);
   checkpoint_due_.reset();
+  if (withdrawn_) ledger_.report(withdrawn_->ticket, ReceiptState::kAborted, reason);
+  withdrawn_.reset();
   if (flight_ && needs_motors(flight_->motion.command_class)) {
     ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, reason);
     withdraw();

@@ -3,7 +3,10 @@
 // one.
 //
 // Completion is proved by a checkpoint the sequencer places behind the command, with a number of its own (7001..8000,
-// cycling); clients have 1..7000.
+// cycling); clients have 1..7000. Where none can be placed any more (the link was cut, the owner is gone, the queue is
+// to be cleared) the robot's state proves it: an arm at rest with nothing queued and nothing begun has executed
+// everything it echoed. So that no image can mean both, no checkpoint enters the queue while the arm comes to rest in a
+// pause.
 #pragma once
 
 #include <array>
@@ -39,7 +42,10 @@ class MoveSequencer {
   void seed(const View& view) noexcept;
 
   // False when the queue is full.
-  bool accept(const Motion& motion) noexcept { return queue_.push(motion); }
+  bool accept(const Motion& motion) noexcept {
+    proofs_wait_ = false;
+    return queue_.push(motion);
+  }
   bool full() const noexcept { return queue_.full(); }
 
   // Reads echo and checkpoints of a fresh image, and ends what timed out.
@@ -55,6 +61,11 @@ class MoveSequencer {
   void end_motion(Reason reason) noexcept;
   // While the robot is told to clear its queue: what it echoes now it may have refused, so its end waits for end_all().
   void set_dropping(bool on) noexcept { dropping_ = on; }
+  // Pause goes into this image: a checkpoint that the robot has not echoed yet is taken back, or it could reach a robot
+  // whose pause hides whether the command before it was done.
+  void pause_rises() noexcept;
+  // Nothing is sent, not even our own checkpoints, until a client asks for motion again.
+  void hold_proofs() noexcept { proofs_wait_ = true; }
   // SetPoint 0: the robot ignores MoveID and command until the next one is sent.
   void disarm() noexcept { armed_ = false; }
   // The velocity stream has the image: MoveID 0, and nothing of the last command left in it.
@@ -69,13 +80,13 @@ class MoveSequencer {
   void give_up_unresolved() noexcept { end_all(ReceiptState::kAborted, Reason::kLinkLost); }
 
   // Nothing waiting, under way, or unproved in the robot's queue.
-  bool idle() const noexcept { return queue_.empty() && !flight_ && !checkpoint_due_ && awaiting_.empty(); }
+  bool idle() const noexcept { return queue_.empty() && !unproved(); }
+  // The robot may have something of which we do not know yet whether it executes it.
+  bool unproved() const noexcept { return flight_ || checkpoint_due_ || withdrawn_ || !awaiting_.empty(); }
   // No handshake under way and none waiting: the image is free for a velocity stream.
   bool handshake_idle() const noexcept { return queue_.empty() && !flight_ && !checkpoint_due_ && !withdrawing_; }
   // Something was given to the robot that may still be executing.
-  bool robot_may_be_busy() const noexcept {
-    return flight_ || checkpoint_due_ || !awaiting_.empty() || fresh_since_echo_ < kSettleImages;
-  }
+  bool robot_may_be_busy() const noexcept { return unproved() || fresh_since_echo_ < kSettleImages; }
 
   void write(image::Outputs& out) const noexcept;
 
@@ -95,6 +106,8 @@ class MoveSequencer {
   void put(const View& view, std::uint32_t command, const Motion& motion, bool is_checkpoint) noexcept;
   void acknowledged() noexcept;
   void reached(const View& view) noexcept;
+  void prove_by_rest(const image::MotionStatus& m) noexcept;
+  void resolve_withdrawn(bool taken) noexcept;
   void complete_through(std::size_t count) noexcept;
   void discard_through(std::size_t count, const View& view) noexcept;
   void withdraw() noexcept;
@@ -120,8 +133,11 @@ class MoveSequencer {
   bool dropping_ = false;
   bool withdrawing_ = false;  // a MoveID stands unechoed with SetPoint 0: learn whether it was taken
   int withdrawn_images_ = 0;
+  std::optional<Awaited> withdrawn_;  // it is our checkpoint
+  bool proofs_wait_ = false;
   int fresh_since_echo_ = kSettleImages;
   int idle_images_ = 0;
+  int rest_images_ = 0;  // paused and at rest
   bool seeded_ = false;
 };
 

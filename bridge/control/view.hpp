@@ -22,6 +22,10 @@ struct View {
 // inferred: an answer may lag the question by up to two bus cycles (frame in flight, robot's own cycle).
 inline constexpr int kSettleImages = 3;
 
+// Paused and at rest for so many images: what the robot then says of its queue is its last word. inferred: EOM, EOB and
+// FIFOSpace may lag behind Paused, but not for this long.
+inline constexpr int kRestImages = 20;
+
 // Any stop signal, present or waiting to be reset. Bits the Meca500 does not have count too: if one is ever set,
 // something is wrong enough not to move.
 bool safety_stop(const image::Inputs& in) noexcept;

@@ -83,7 +83,7 @@ TEST_F(BusGroupTest, EveryRobotOfEveryBusGetsOneRecordPerRound) {
   buses.push_back(bus(seen_, {&arm1_}));
   buses.push_back(bus(other, {&arm2_}));
   BusGroup group(std::move(buses));
-  for (int i = 0; i < 3; ++i) group.run(next(), false);
+  for (int i = 0; i < 3; ++i) group.run(next(), BusGroup::Ending::kNone);
   EXPECT_EQ(seen_.exchanges, 3);
   EXPECT_EQ(other.exchanges, 3);
   EXPECT_EQ(arm1_.records.size(), 3U);
@@ -92,11 +92,11 @@ TEST_F(BusGroupTest, EveryRobotOfEveryBusGetsOneRecordPerRound) {
 
 TEST_F(BusGroupTest, AFullRecordQueueCostsRecordsAndNeverReceipts) {
   auto group = this->group({&arm1_});
-  for (std::size_t i = 0; i < arm1_.records.capacity() + 5; ++i) group.run(next(), false);
+  for (std::size_t i = 0; i < arm1_.records.capacity() + 5; ++i) group.run(next(), BusGroup::Ending::kNone);
   EXPECT_EQ(arm1_.records_dropped.load(), 5U);
   arm1_.inbox.push(take_control(1));
-  group.run(next(), false);
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
+  group.run(next(), BusGroup::Ending::kNone);
   ASSERT_NE(arm1_.receipts.front(), nullptr);
   EXPECT_EQ(arm1_.receipts.front()->receipt.command_id, 1U);
   EXPECT_EQ(arm1_.receipts_lost.load(), 0U);
@@ -104,30 +104,30 @@ TEST_F(BusGroupTest, AFullRecordQueueCostsRecordsAndNeverReceipts) {
 
 TEST_F(BusGroupTest, WithoutRoomForReceiptsRequestsWaitInTheInbox) {
   auto group = this->group({&arm1_});
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
   while (arm1_.receipts.push({})) {
   }
   arm1_.inbox.push(take_control(1));
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
   EXPECT_EQ(arm1_.inbox.size(), 1U);
   while (arm1_.receipts.front() != nullptr) arm1_.receipts.pop();  // the publisher has caught up
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
   EXPECT_EQ(arm1_.inbox.size(), 0U);
   EXPECT_EQ(arm1_.receipts_lost.load(), 0U);
 }
 
 TEST_F(BusGroupTest, AFloodIsTakenInPortionsThatOneCycleCanAnswer) {
   auto group = this->group({&arm1_});
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
   for (std::uint64_t id = 1; id <= 100; ++id) arm1_.inbox.push(take_control(id));
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
   EXPECT_EQ(arm1_.inbox.size(), 100U - Cycle::kMaxRequests);
 }
 
 TEST_F(BusGroupTest, TheStopImageIsOnTheBusBeforeTheGoodBye) {
   auto group = this->group({&arm1_});
-  for (int i = 0; i < 5; ++i) group.run(next(), false);
-  for (int i = 0; i < 3; ++i) group.run(next(), true);
+  for (int i = 0; i < 5; ++i) group.run(next(), BusGroup::Ending::kNone);
+  for (int i = 0; i < 3; ++i) group.run(next(), BusGroup::Ending::kStop);
   EXPECT_FALSE(seen_.closed);
   group.close(next());
   EXPECT_TRUE(seen_.closed);
@@ -138,8 +138,8 @@ TEST_F(BusGroupTest, TheStopImageIsOnTheBusBeforeTheGoodBye) {
 TEST_F(BusGroupTest, TheLastRecordSaysThatNobodyIsConnected) {
   auto group = this->group({&arm1_});
   arm1_.inbox.push(take_control(1));
-  group.run(next(), false);
-  group.run(next(), false);
+  group.run(next(), BusGroup::Ending::kNone);
+  group.run(next(), BusGroup::Ending::kNone);
   group.close(next());
   CycleRecord last;
   std::uint64_t cycle_before = 0;

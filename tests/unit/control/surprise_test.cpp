@@ -180,8 +180,12 @@ TEST(Shutdown, puts_the_stop_image_out_and_ends_every_command) {
   b.step();
   EXPECT_TRUE(b.out.motion_control.pause_motion);
   EXPECT_FALSE(b.out.motion_control.set_point);
-  EXPECT_OUTCOME(b.last(in_robot), kAborted, Reason::kShutdown);
+  EXPECT_FALSE(b.out.motion_control.clear_motion);
   EXPECT_OUTCOME(b.last(waiting), kDiscarded, Reason::kShutdown);
+  EXPECT_FALSE(b.cycle->finished());
+  EXPECT_OUTCOME(b.outcome(in_robot), kDiscarded, Reason::kShutdown);
+  EXPECT_TRUE(b.until([&] { return b.cycle->finished(); }));
+  EXPECT_EQ(b.robot.queued(), 0u) << "whoever resumes the robot later must not start it";
   EXPECT_EQ(b.result->record.control.last_loss, Loss::kShutdown);
   EXPECT_OUTCOME(b.outcome(kTakeControl), kRejected, Reason::kShutdown);
 }

@@ -77,7 +77,8 @@ class TinyRobot {
     run();
     dynamic_data(out);
     in.motion_status.fifo_space = static_cast<std::uint16_t>(13000 - queue_.size());
-    in.motion_status.eob = in.motion_status.eom = queue_.empty();
+    in.motion_status.eob = queue_.empty();
+    in.motion_status.eom = queue_.empty() || in.motion_status.paused;
     const bool refuses = !in.robot_status.activated || (answers_actions && out.motion_control.clear_motion) ||
                          in.robot_status.error_code != 0;
     if (refuses) in.motion_status.cleared = true;
