@@ -20,9 +20,15 @@ bool is_joint_move(std::uint32_t id) noexcept {
   return id == image::kMoveJoints || id == image::kMovePose || id == image::kMoveJointsRel;
 }
 
+bool is_move(std::uint32_t id) noexcept;
+
+bool takes_no_time(std::uint32_t id) noexcept { return !is_move(id) && !is_velocity(id) && id != image::kDelay; }
+
 bool is_linear_move(std::uint32_t id) noexcept {
   return id == image::kMoveLin || id == image::kMoveLinRelTrf || id == image::kMoveLinRelWrf;
 }
+
+bool is_move(std::uint32_t id) noexcept { return is_joint_move(id) || is_linear_move(id); }
 
 }  // namespace
 
@@ -186,13 +192,16 @@ std::uint16_t Motion::advance(Time now, Time dt, const JointLimits& limits, bool
     run_velocity(now, left, limits, recovery_mode);
     return error::kNone;
   }
+  const bool slowing = held_ && active_count_ > 0;
   left = pace(left);
   if (clearing_ && going_ <= 0) {
     active_count_ = 0;
     clearing_ = done_logged_ = false;
   }
   for (int budget = kCommandsPerStep; budget > 0 && !velocity_.active();) {
-    const bool may_start = active_count_ == 0 ? !held_ && !queue_.empty() : can_blend();
+    // inferred: a move that reaches its end while the arm slows down for a pause takes along what needs no time behind it.
+    const bool ready = !queue_.empty() && (!held_ || (slowing && takes_no_time(queue_.front().id)));
+    const bool may_start = active_count_ == 0 ? ready : can_blend();
     if (may_start) {
       --budget;
       if (const auto code = start_next(now, limits, recovery_mode); code != error::kNone) return code;

@@ -134,7 +134,12 @@ void Actions::start(Action& a, const View& view, bool unproved) noexcept {
       break;
     case CommandKind::kResumeMotion:
       if (view.layout == Layout::kFirmware9) {
-        pause_by_stop_ || !pause_ ? enter(a, Phase::kClearFirst, view) : let_go(a, view);
+        if (pause_by_stop_ || !pause_) {
+          pause_ = pause_ || unproved;
+          enter(a, unproved ? Phase::kRest : Phase::kClearFirst, view);
+        } else {
+          let_go(a, view);
+        }
       } else {
         enter(a, Phase::kLowerLevels, view);
         pause_ = false;
@@ -208,8 +213,10 @@ Actions::Verdict Actions::step_resume(Action& a, const View& view) noexcept {
       return Verdict::kGoOn;
     case Phase::kRelease:
       return confirmed(a, view) && (!a.settle || settled) ? Verdict::kDone : Verdict::kGoOn;
-    case Phase::kQueued:
     case Phase::kRest:
+      if (a.rest.reached(view)) enter(a, Phase::kClearFirst, view);
+      return Verdict::kGoOn;
+    case Phase::kQueued:
     case Phase::kSent:
       return Verdict::kGoOn;
   }
@@ -247,7 +254,7 @@ void Actions::finish(const Action& a) noexcept {
 void Actions::revert(const Action& a) noexcept {
   switch (a.ticket.kind) {
     case CommandKind::kResumeMotion:
-      pause_ = pause_by_stop_ = true;
+      pause_ = true;
       break;  // still stopped, as far as we know
     case CommandKind::kSimMode:
       sim_mode_ = !a.wanted;
@@ -332,14 +339,21 @@ Actions::Events Actions::advance(const View& view, bool hold, bool unproved) noe
 }
 
 void Actions::end_all(Reason reason) noexcept {
-  for (; count_ > 0;) {
-    const Action a = actions_[count_ - 1];
-    --count_;
+  end(reason, false);
+  linger_activate_ = linger_home_ = false;
+}
+
+void Actions::end_all_but_deactivate(Reason reason) noexcept { end(reason, true); }
+
+void Actions::end(Reason reason, bool keep_deactivate) noexcept {
+  for (std::size_t i = count_; i-- > 0;) {
+    const Action a = actions_[i];
     const bool sent = a.phase != Phase::kQueued;
+    if (keep_deactivate && sent && a.ticket.kind == CommandKind::kDeactivate) continue;
+    remove(i);
     if (sent) revert(a);
     ledger_.report(a.ticket, sent ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason);
   }
-  linger_activate_ = linger_home_ = false;
   brakes_asked_.reset();
 }
 
@@ -373,7 +387,8 @@ bool Actions::sent(CommandKind kind) const noexcept {
 
 bool Actions::clearing() const noexcept {
   const Action* resume = running(CommandKind::kResumeMotion);
-  return running(CommandKind::kClearMotion) || (resume && resume->phase == Phase::kClearFirst);
+  return running(CommandKind::kClearMotion) ||
+         (resume && (resume->phase == Phase::kRest || resume->phase == Phase::kClearFirst));
 }
 
 void Actions::write(image::Outputs& out) const noexcept {

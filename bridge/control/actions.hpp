@@ -50,13 +50,14 @@ class Actions {
 
   // All actions end: running ones ABORTED, queued ones DISCARDED.
   void end_all(Reason reason) noexcept;
+  // The same before an orderly end: motors going off are left to it.
+  void end_all_but_deactivate(Reason reason) noexcept;
   // Running ones go on to their confirmation: a bit is not dropped halfway.
   void discard_queued(Reason reason) noexcept;
 
   // The stop image's Pause: held until somebody resumes. On firmware 9 letting go of it clears the queue first.
   // Ends a Resume that is under way or waiting.
   void hold_pause(Reason reason) noexcept;
-  bool pausing() const noexcept { return pause_; }  // PauseMotion is in the image
   bool pause_held_by_stop() const noexcept { return pause_ && pause_by_stop_; }
   // An owner that released the brakes is gone: engage them again.
   void engage_brakes() noexcept;
@@ -101,6 +102,7 @@ class Actions {
   void revert(const Action& action) noexcept;
   void overtake(bool deactivate, Reason reason) noexcept;
   void remove(std::size_t index) noexcept;
+  void end(Reason reason, bool keep_deactivate) noexcept;
   const Action* running(CommandKind kind) const noexcept;
   bool sent(CommandKind kind) const noexcept;  // its bit is in the image
 

@@ -343,12 +343,13 @@ void Controller::lose_owner(ControlState::Loss why, const View& view) noexcept {
 void Controller::shut_down(const View& view) noexcept {
   if (shut_down_) {
     stop_.cancel();
+    actions_.end_all(Reason::kShutdown);
     return sequencer_.end_all(ReceiptState::kAborted, Reason::kShutdown);
   }
   shut_down_ = true;
   arbiter_.drop(ControlState::Loss::kShutdown, false);
   end_contest(Reason::kShutdown);
-  actions_.end_all(Reason::kShutdown);
+  actions_.end_all_but_deactivate(Reason::kShutdown);
   actions_.engage_brakes();
   velocity_.reset();
   if (seeded_ && (view.in.robot_status.activated || view.in.robot_status.busy)) {
@@ -385,7 +386,8 @@ void Controller::advance(const View& view) noexcept {
   const bool pause_rises = actions_.pausing() && !was_pausing_;
   was_pausing_ = actions_.pausing();
   if (dropping || pause_rises) sequencer_.pause_rises();
-  sequencer_.advance(view, dropping || pause_rises || actions_.pause_held_by_stop());
+  const bool hold = dropping || pause_rises || actions_.pause_held_by_stop();
+  sequencer_.advance(view, hold, actions_.pausing());
   if (!arbiter_.owned() && sequencer_.handshake_idle()) sequencer_.disarm();
   velocity_.advance(view, velocity_allowed(view));
   if (velocity_.active()) sequencer_.stand_aside();

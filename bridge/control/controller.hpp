@@ -48,7 +48,9 @@ class Controller {
   }
 
   // After a ShutdownRequest: stopped, and every command has its end.
-  bool finished() const noexcept { return shut_down_ && !stop_.active() && sequencer_.idle() && ledger_.drained(); }
+  bool finished() const noexcept {
+    return shut_down_ && !stop_.active() && !actions_.deactivating() && sequencer_.idle() && ledger_.drained();
+  }
 
   const ControlState& state() const noexcept { return arbiter_.state(); }
   Ledger& ledger() noexcept { return ledger_; }

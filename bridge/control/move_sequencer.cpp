@@ -70,6 +70,8 @@ void MoveSequencer::observe(const View& view) noexcept {
   if (view.fresh) {
     const std::uint16_t echo = view.in.motion_status.move_id;
     if (fresh_since_echo_ < kSettleImages) ++fresh_since_echo_;
+    // inferred: an arm that still slows down from what an error cleared may drop what it is sent, without an error.
+    slowing_down_ = view.in.robot_status.error_code != 0 || (slowing_down_ && !view.in.motion_status.eom);
     const bool resting = view.in.motion_status.paused && view.in.motion_status.eom;
     rest_images_ = resting ? std::min(rest_images_ + 1, kRestImages + 1) : 0;
     if (flight_ && echo == move_id_) acknowledged();
@@ -192,9 +194,11 @@ void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& m
   flight_ = Flight{motion, is_checkpoint, 0, view.now};
 }
 
-void MoveSequencer::advance(const View& view, bool hold) noexcept {
+void MoveSequencer::advance(const View& view, bool hold, bool pausing) noexcept {
   if (flight_ || withdrawing_ || hold || !view.fresh || view.in.motion_status.fifo_space == 0) return;
-  if (view.in.motion_status.paused && rest_images_ <= kRestImages) return;
+  if (slowing_down_) return;
+  const bool paused = view.in.motion_status.paused || (pausing && view.in.robot_status.activated);
+  if (paused && rest_images_ <= kRestImages) return;
   if (checkpoint_due_) {
     if (awaiting_.full() || proofs_wait_) return;
     Motion checkpoint;

@@ -51,7 +51,8 @@ class MoveSequencer {
   // Reads echo and checkpoints of a fresh image, and ends what timed out.
   void observe(const View& view) noexcept;
   // Puts the next command into the image when the handshake is free. `hold`: the robot takes no commands just now.
-  void advance(const View& view, bool hold) noexcept;
+  // `pausing`: PauseMotion is in the image, whether the robot shows it already or not.
+  void advance(const View& view, bool hold, bool pausing) noexcept;
 
   // Commands that have not been sent end DISCARDED; what is under way goes on.
   void discard_unsent(Reason reason) noexcept;
@@ -137,7 +138,8 @@ class MoveSequencer {
   bool proofs_wait_ = false;
   int fresh_since_echo_ = kSettleImages;
   int idle_images_ = 0;
-  int rest_images_ = 0;  // paused and at rest
+  int rest_images_ = 0;        // paused and at rest
+  bool slowing_down_ = false;  // after an error, until the arm is seen at rest
   bool seeded_ = false;
 };
 

@@ -59,11 +59,16 @@ class Bench {
   void exchange_frames() {
     exchange.link = link_up ? LinkState::kUp : LinkState::kDown;
     exchange.fresh = false;
-    if (!link_up) return;
+    if (!link_up) {
+      if (sim) sim->step_without_outputs(settings.cycle);
+      return;
+    }
     const bool arrives = exchange.output_valid && !lose_output;
     lose_output = false;
     if (sim) {
       arrives ? sim->step(out, settings.cycle) : sim->step_without_outputs(settings.cycle);
+      if (arrives && repeat_output) sim->step(out, 1us);
+      repeat_output = false;
     } else if (arrives) {
       robot.step(out);
     } else {
@@ -73,8 +78,12 @@ class Bench {
       lose_input = false;
       return;
     }
-    image::encode_inputs(sim ? sim->inputs() : robot.in, {layout}, exchange.input);
     exchange.fresh = true;
+    if (repeat_input) {  // the image before this one comes in its place
+      repeat_input = false;
+      return;
+    }
+    image::encode_inputs(sim ? sim->inputs() : robot.in, {layout}, exchange.input);
   }
   void steps(int n) {
     for (int i = 0; i < n; ++i) step();
@@ -172,6 +181,7 @@ class Bench {
   std::chrono::nanoseconds now = 1000s;
   std::int64_t unix_ns = 1'800'000'000'000'000'000;
   bool link_up = false, lose_output = false, lose_input = false;
+  bool repeat_output = false, repeat_input = false;
   bool keep_alive = true;  // the owner renews its lease in every cycle
   ClientName client{"cell-plc"};
   LossPolicy policy = LossPolicy::kStopMotion;
