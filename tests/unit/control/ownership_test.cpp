@@ -161,7 +161,7 @@ TEST(OwnerLoss, in_a_paused_robot_stops_motion_that_might_have_finished) {
     b.connect_ready();
     b.outcome(kPauseMotion);
     const auto id = b.move(1);
-    b.steps(5);
+    b.steps(40);
     ASSERT_EQ(b.robot.queued(), 2u) << "the move and the bridge's checkpoint";
     b.keep_alive = false;
     EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kOwnerLost);
@@ -211,7 +211,7 @@ TEST(OwnerLoss, by_release_leaves_motion_that_may_finish_in_a_paused_robot) {
     b.connect_ready();
     b.outcome(kPauseMotion);
     const auto id = b.move(1);
-    b.steps(5);
+    b.steps(40);
     b.outcome(kReleaseControl);
     b.steps(500);
     EXPECT_FALSE(b.terminal(id)) << "the robot still has it";

@@ -158,9 +158,9 @@ TEST_F(TakeOver, of_a_paused_robot_leaves_nothing_for_the_next_resume_to_run) {
   b.policy = LossPolicy::kFinishMotion;
   b.outcome(kPauseMotion);
   const auto queued = b.move(1);
-  b.steps(10);
+  b.steps(40);
   send(supervisor, kTakeControl);
-  steps(520, {&supervisor});
+  steps(560, {&supervisor});
   EXPECT_OUTCOME(b.last(queued), kDiscarded, Reason::kOwnerLost);
   EXPECT_EQ(b.robot.queued(), 0u);
 }
