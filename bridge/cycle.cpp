@@ -4,6 +4,7 @@
 
 #include "bridge/control/controller.hpp"
 #include "bridge/control/firmware.hpp"
+#include "bridge/control/joint_limits.hpp"
 
 namespace meca::bridge {
 namespace {
@@ -30,6 +31,7 @@ struct Cycle::State {
 
   CycleSettings settings;
   control::FirmwareProbe firmware;
+  control::LimitsProbe limits;
   control::Controller controller;
 
   std::uint64_t cycle = 0;
@@ -113,13 +115,15 @@ void Cycle::step(std::span<const control::Request> requests, transports::Exchang
   const control::View view{s.inputs, s.firmware.layout(), s.fresh, stamp.now, stamp.unix_ns};
   const control::LinkFacts link{.up = exchange.link == LinkState::kUp,
                                 .usable = s.usable(exchange, stamp),
-                                .firmware_known = s.firmware.known() && !s.firmware.mismatch()};
+                                .firmware_known = s.firmware.known() && !s.firmware.mismatch(),
+                                .product_type = s.firmware.product_type()};
+  s.limits.observe(view, link.usable && link.firmware_known && s.firmware.settled());
   s.controller.step(requests, view, link);
 
   exchange.output_valid = s.controller.may_command();
   s.outputs = s.controller.outputs();
   auto& slots = s.outputs.dynamic_data_configuration.type_ids;
-  slots = s.firmware.slots(s.controller.dynamic_data());
+  slots = s.limits.slots(s.firmware.slots(s.controller.dynamic_data()));
   image::encode_outputs(s.outputs, {s.firmware.layout(), s.settings.byte_order}, exchange.output);
 
   s.counters.commands_received = s.controller.ledger().received();

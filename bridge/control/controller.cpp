@@ -174,11 +174,13 @@ std::optional<Refusal> Controller::refusal_of_control(const CommandRequest& requ
 }
 
 std::optional<Refusal> Controller::refusal_of_command(const CommandRequest& request, const Ticket& ticket,
-                                                      const View& view) noexcept {
+                                                      const View& view, LinkFacts link) noexcept {
   const bool about_control = request.kind == CommandKind::kTakeControl || request.kind == CommandKind::kReleaseControl;
   if (about_control) return check_action_arguments(request);  // never for want of room among the owner's actions
   if (request.kind != CommandKind::kMotion) return actions_.check(request, ticket, view);
-  if (const auto refusal = check_motion_arguments(request, view.layout, limits_)) return refusal;
+  RobotFacts robot{.layout = view.layout, .product_type = link.product_type, .limits = limits_};
+  if (!robot_may_move(view) && view.in.motion_status.eom) robot.standing_at = view.in.target_joint_set.joints;
+  if (const auto refusal = check_motion_arguments(request, robot)) return refusal;
   if (const auto refusal = check_motion_state(request, view)) return refusal;
   if (actions_.deactivating()) return Refusal{Reason::kNotActivated};
   if (actions_.pause_held_by_stop() || stop_.active()) return Refusal{Reason::kPaused};
@@ -204,7 +206,7 @@ void Controller::handle(const CommandRequest& request, const View& view, LinkFac
     return ledger_.report(*ticket, ReceiptState::kCompleted);
   }
   if (const auto refusal = refusal_of_control(request, link)) return reject(request, *ticket, *refusal);
-  if (const auto refusal = refusal_of_command(request, *ticket, view)) return reject(request, *ticket, *refusal);
+  if (const auto refusal = refusal_of_command(request, *ticket, view, link)) return reject(request, *ticket, *refusal);
   execute(request, *ticket, view);
 }
 

@@ -26,9 +26,10 @@ struct ControllerSettings {
 
 // What the cycle knows about the connection in this step.
 struct LinkFacts {
-  bool up = false;              // as the transport says
-  bool usable = false;          // and images arriving
-  bool firmware_known = false;  // and it is one that is expected
+  bool up = false;                 // as the transport says
+  bool usable = false;             // and images arriving
+  bool firmware_known = false;     // and it is one that is expected
+  std::uint32_t product_type = 0;  // dynamic data type 2, 0 = not known
 };
 
 class Controller {
@@ -66,8 +67,8 @@ class Controller {
   void follow_contender(const View& view) noexcept;
   void end_contest(Reason reason) noexcept;
   std::optional<Refusal> refusal_of_control(const CommandRequest& request, LinkFacts link) const noexcept;
-  std::optional<Refusal> refusal_of_command(const CommandRequest& request, const Ticket& ticket,
-                                            const View& view) noexcept;
+  std::optional<Refusal> refusal_of_command(const CommandRequest& request, const Ticket& ticket, const View& view,
+                                            LinkFacts link) noexcept;
   void reject(const CommandRequest& request, const Ticket& ticket, const Refusal& refusal) noexcept;
   void release(const View& view) noexcept;
   void lose_owner(ControlState::Loss why, const View& view) noexcept;

@@ -27,6 +27,8 @@ class FirmwareProbe {
   std::uint32_t product_type() const noexcept { return product_type_; }
   std::uint32_t serial_number() const noexcept { return serial_number_; }
 
+  // All that is asked for is known or given up: no slot is borrowed.
+  bool settled() const noexcept { return slots({}) == std::array<std::uint32_t, image::kDynamicSlots>{}; }
   // The dynamic data types to ask for: `wanted`, with the first slots borrowed for types 1, 2 and 3 until they are
   // known.
   std::array<std::uint32_t, image::kDynamicSlots> slots(

@@ -98,8 +98,11 @@ std::string range_text(const Receipt& r) {
   if (!name.empty()) text += " (" + name + ")";
   text += " is " + number(r.value);
   if (!unit.empty()) text += " " + unit;
-  const bool joints = r.kind == CommandKind::kMotion && r.motion_command_id == image::kMoveJoints;
-  text += "; " + (joints ? "joint " + std::to_string(r.argument + 1) : subject(r)) + " allows " + bounds(r, unit);
+  const bool motion = r.kind == CommandKind::kMotion;
+  const bool steps = motion && r.motion_command_id == image::kMoveJointsRel;
+  const bool joints = motion && r.motion_command_id == image::kMoveJoints;
+  const std::string who = joints || steps ? "joint " + std::to_string(r.argument + 1) : subject(r);
+  text += "; " + who + " allows " + bounds(r, unit) + (steps ? " from where it stands" : "");
   if (r.motion_command_id == image::kSetCheckpoint && r.value >= kFirstOwnCheckpoint && r.value <= kLastOwnCheckpoint) {
     text += " (the numbers above are the bridge's own)";
   }

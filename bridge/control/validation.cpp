@@ -1,5 +1,6 @@
 #include "bridge/control/validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,9 @@ namespace {
 using image::CommandClass;
 using image::Layout;
 
-constexpr std::uint32_t kModelLimits123 = 12, kModelLimits456 = 13, kEffectiveLimits123 = 14, kEffectiveLimits456 = 15;
+constexpr std::uint32_t kProductR3 = 3;
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNarrowestJoint = 25;  // the robot takes no joint limits closer to each other, degrees (spec 6.2)
 
 Refusal out_of_range(std::size_t index, double value, double minimum, double maximum) noexcept {
   return {Reason::kArgumentRange,
@@ -52,10 +55,6 @@ std::optional<Refusal> check_whole(const CommandRequest& r, std::initializer_lis
   return std::nullopt;
 }
 
-bool plausible(JointLimits::Range r) noexcept {
-  return std::isfinite(r.minimum) && std::isfinite(r.maximum) && r.minimum < r.maximum;
-}
-
 std::optional<Refusal> check_arguments(const CommandRequest& r, const image::MotionCommandInfo& info) noexcept {
   for (std::size_t i = 0; i < r.argument_count; ++i) {
     const double value = r.arguments[i];
@@ -75,29 +74,77 @@ std::optional<Refusal> check_arguments(const CommandRequest& r, const image::Mot
   return std::nullopt;
 }
 
-}  // namespace
-
-void JointLimits::observe(const View& view) noexcept {
-  if (!view.fresh) return;
-  for (const image::DynamicData& data : view.in.dynamic_data) {
-    if (data.type_id < kModelLimits123 || data.type_id > kEffectiveLimits456) continue;
-    const bool effective = data.type_id >= kEffectiveLimits123;
-    const std::size_t first = data.type_id == kModelLimits456 || data.type_id == kEffectiveLimits456 ? 3 : 0;
-    // Firmware 9 interleaves the effective limits: min, max of one joint after the other (spec 2.2, types 14 and 15).
-    const bool interleaved = effective && view.layout == Layout::kFirmware9;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Range range{data.values[interleaved ? 2 * i : i], data.values[interleaved ? 2 * i + 1 : i + 3]};
-      if (plausible(range)) (effective ? effective_ : model_)[first + i] = {true, range};
+std::optional<Refusal> check_joints(const CommandRequest& r, const JointLimits& limits) noexcept {
+  for (std::size_t i = 0; i < r.argument_count; ++i) {
+    const JointLimits::Range range = limits.range(i);
+    // As floats: a client that asks for a limit of 60.1 as the robot tells it means the limit.
+    const auto within = [&](double value) {
+      const auto v = static_cast<float>(value);
+      return v >= static_cast<float>(range.minimum) && v <= static_cast<float>(range.maximum);
+    };
+    if (!fits_float(r.arguments[i]) || !within(r.arguments[i])) {
+      return out_of_range(i, r.arguments[i], range.minimum, range.maximum);
     }
   }
+  return std::nullopt;
 }
 
-JointLimits::Range JointLimits::range(std::size_t joint) const noexcept {
-  if (effective_[joint].known) return effective_[joint].range;
-  if (model_[joint].known) return model_[joint].range;
-  const image::Argument& argument = image::find_motion_command(image::kMoveJoints)->arguments[joint];
-  return {argument.minimum, argument.maximum};
+// Steps from where the arm stands. A joint outside its limits (after recovery mode) may move back towards them.
+std::optional<Refusal> check_joint_steps(const CommandRequest& r, const RobotFacts& robot) noexcept {
+  if (!robot.standing_at) return std::nullopt;  // the sum is not known: the robot itself checks it when it is
+  constexpr double kRounding = 0.001;           // of positions that are told as floats, degrees
+  for (std::size_t i = 0; i < r.argument_count; ++i) {
+    const double from = (*robot.standing_at)[i], step = r.arguments[i];
+    const JointLimits::Range range = robot.limits.range(i);
+    const bool outside =
+        (step > 0 && from + step > range.maximum + kRounding) || (step < 0 && from + step < range.minimum - kRounding);
+    if (outside) return out_of_range(i, step, std::min(0.0, range.minimum - from), std::max(0.0, range.maximum - from));
+  }
+  return std::nullopt;
 }
+
+// (n, 0, 0) gives joint n its model's limits back (spec 6.3).
+std::optional<Refusal> check_new_joint_limits(const CommandRequest& r, const JointLimits& limits) noexcept {
+  const double minimum = r.arguments[1], maximum = r.arguments[2];
+  if (minimum == 0 && maximum == 0) return std::nullopt;
+  const JointLimits::Range model = limits.model(static_cast<std::size_t>(r.arguments[0]) - 1);
+  if (minimum < model.minimum || minimum > model.maximum - kNarrowestJoint) {
+    return out_of_range(1, minimum, model.minimum, model.maximum - kNarrowestJoint);
+  }
+  if (maximum < minimum + kNarrowestJoint || maximum > model.maximum) {
+    return out_of_range(2, maximum, minimum + kNarrowestJoint, model.maximum);
+  }
+  return std::nullopt;
+}
+
+// Six zeros give back the factory's zone (spec 6.3). inferred: else a zone without inside is refused.
+std::optional<Refusal> check_work_zone(const CommandRequest& r) noexcept {
+  const bool reset = std::all_of(r.arguments.begin(), r.arguments.end(), [](double v) { return v == 0; });
+  for (std::size_t i = 0; i < 3 && !reset; ++i) {
+    if (!(r.arguments[i + 3] > r.arguments[i])) return out_of_range(i + 3, r.arguments[i + 3], r.arguments[i], kInf);
+  }
+  return std::nullopt;
+}
+
+// What the range of each argument alone does not say.
+std::optional<Refusal> check_together(const CommandRequest& r, const image::MotionCommandInfo& info,
+                                      const RobotFacts& robot) noexcept {
+  switch (r.motion_command_id) {
+    case image::kMoveJointsRel:
+      return check_joint_steps(r, robot);
+    case image::kSetJointVel:
+    case image::kSetJointVelLimit:
+      if (robot.product_type != kProductR3 || r.arguments[0] <= 100) return std::nullopt;
+      return out_of_range(0, r.arguments[0], info.arguments[0].minimum, 100);
+    case image::kSetJointLimits:
+      return check_new_joint_limits(r, robot.limits);
+    case image::kSetWorkZoneLimits:
+      return check_work_zone(r);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<Refusal> check_action_arguments(const CommandRequest& r) noexcept {
   switch (r.kind) {
@@ -124,27 +171,20 @@ std::optional<Refusal> check_action_arguments(const CommandRequest& r) noexcept 
   return Refusal{Reason::kUnknownCommand};  // a number that is no CommandKind
 }
 
-std::optional<Refusal> check_motion_arguments(const CommandRequest& r, Layout layout,
-                                              const JointLimits& limits) noexcept {
+std::optional<Refusal> check_motion_arguments(const CommandRequest& r, const RobotFacts& robot) noexcept {
   const image::MotionCommandInfo* info = image::find_motion_command(r.motion_command_id);
-  if (!info || info->since > layout || info->command_class == CommandClass::kOtherRobots ||
-      info->command_class == CommandClass::kVelocity || (r.use_variables && layout != Layout::kFirmware11)) {
+  if (!info || info->since > robot.layout || info->command_class == CommandClass::kOtherRobots ||
+      info->command_class == CommandClass::kVelocity || (r.use_variables && robot.layout != Layout::kFirmware11)) {
     return Refusal{Reason::kUnknownCommand};
   }
   const std::size_t most = info->arguments.size();
   if (r.argument_count < info->minimum_arguments || r.argument_count > most) {
     return wrong_count(r.argument_count, info->minimum_arguments, most);
   }
-  if (info->id == image::kMoveJoints && !r.use_variables) {
-    for (std::size_t i = 0; i < r.argument_count; ++i) {
-      const JointLimits::Range range = limits.range(i);
-      if (!(r.arguments[i] >= range.minimum && r.arguments[i] <= range.maximum)) {
-        return out_of_range(i, r.arguments[i], range.minimum, range.maximum);
-      }
-    }
-    return std::nullopt;
-  }
-  return check_arguments(r, *info);
+  if (r.use_variables) return check_arguments(r, *info);
+  if (info->id == image::kMoveJoints) return check_joints(r, robot.limits);
+  if (const auto refusal = check_arguments(r, *info)) return refusal;
+  return check_together(r, *info, robot);
 }
 
 std::optional<Refusal> check_motion_state(const CommandRequest& r, const View& view) noexcept {

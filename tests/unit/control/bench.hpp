@@ -95,10 +95,13 @@ class Bench {
     }
     return condition();
   }
-  // Link up, firmware known.
+  // Link up, firmware known, and no dynamic data slot borrowed any more.
   void connect() {
     link_up = true;
-    ASSERT_TRUE(until([&] { return result->record.quality == Quality::kGood && result->record.serial_number != 0; }));
+    ASSERT_TRUE(until([&] {
+      return result->record.quality == Quality::kGood && result->record.serial_number != 0 &&
+             out.dynamic_data_configuration.type_ids == settings.dynamic_data;
+    }));
   }
   void connect_ready() {
     robot.ready();

@@ -24,30 +24,6 @@ TEST(Refusal, names_joint_value_and_range) {
   EXPECT_FALSE(b.out.motion_control.set_point);
 }
 
-TEST(Refusal, follows_the_joint_limits_that_the_robot_itself_reports) {
-  Bench b;
-  b.robot.joint_limits = {-100, -50, -90, 100, 60, 50, -90, -80, -1000, 90, 80, 1000};
-  b.connect_ready();
-  b.outcome(kDynamicData, {3, 14});
-  b.outcome(kDynamicData, {3, 15});
-  const Receipt r = b.outcome(b.send(b.motion(image::kMoveJoints, {0, 70, 0, 0, 0, 0})));
-  EXPECT_OUTCOME(r, kRejected, Reason::kArgumentRange);
-  EXPECT_EQ(r.maximum, 60);
-  EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kMoveJoints, {0, 0, 0, 0, 0, 2000}))), kRejected,
-                 Reason::kArgumentRange);
-  EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kMoveJoints, {0, 60, 0, 0, 0, 0}))), kCompleted, Reason::kNone);
-}
-
-TEST(Refusal, reads_firmware_9s_interleaved_effective_limits) {
-  Bench b({}, Layout::kFirmware9);
-  b.robot.joint_limits = {-100, 100, -50, 60, -90, 50, -90, 90, -80, 80, -1000, 1000};
-  b.connect_ready();
-  b.outcome(kDynamicData, {3, 14});
-  const Receipt r = b.outcome(b.send(b.motion(image::kMoveJoints, {0, 70, 0, 0, 0, 0})));
-  EXPECT_EQ(r.minimum, -50);
-  EXPECT_EQ(r.maximum, 60);
-}
-
 TEST(Refusal, catches_numbers_that_are_none_or_do_not_fit) {
   Bench b;
   b.connect_ready();

@@ -37,6 +37,7 @@ class TinyRobot {
   bool knows_firmware = true;   // false: dynamic data type 1 is never shown
   std::uint16_t major = 11;
   std::vector<float> joint_limits;  // types 14 and 15, twelve numbers; empty: not reported
+  float product_type = 4;           // 3 = R3, 4 = R4
   int busy_cycles = 5;
 
   image::Inputs in;
@@ -200,9 +201,11 @@ class TinyRobot {
       image::DynamicData& d = in.dynamic_data[slot];
       d = {type, {}};
       if (type == image::kDynFirmwareVersion) d.values = {static_cast<float>(major), 3, 1, 200, 0, 0};
-      if (type == image::kDynProductType) d.values[0] = 4;
+      if (type == image::kDynProductType) d.values[0] = product_type;
       if (type == image::kDynSerialNumber) d.values[0] = 4711;
-      if ((type == 14 || type == 15) && !joint_limits.empty()) {
+      const bool limits = type == 14 || type == 15;
+      if (limits && joint_limits.empty()) d.type_id = 40;
+      if (limits && !joint_limits.empty()) {
         const std::size_t first = type == 14 ? 0 : 6;
         for (std::size_t i = 0; i < 6; ++i) d.values[i] = joint_limits[first + i];
       }
