@@ -148,6 +148,11 @@ std::optional<Refusal> Actions::failed(const Action& a, const View& view) const 
   if (needs_health && view.fresh && s.error_code != 0) {
     return Refusal{Reason::kRobotError, {.robot_error = s.error_code}};
   }
+  // Not raised yet: what came in between is not resumed over.
+  const bool raised = a.phase == Phase::kRaise || a.phase == Phase::kRelease;
+  if (kind == CommandKind::kResumeMotion && view.fresh && !raised && unresettable_stop(view.in, view.layout)) {
+    return Refusal{Reason::kSafetyStop};
+  }
   // A P-Stop only holds it up; an E-Stop takes the motors.
   if (moves && view.fresh && motors_cut(view.in)) return Refusal{Reason::kSafetyStop};
   if (kind == CommandKind::kHome && view.fresh && !s.activated) return Refusal{Reason::kNotActivated};

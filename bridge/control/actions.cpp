@@ -401,8 +401,10 @@ void Actions::write(image::Outputs& out) const noexcept {
   const Action* resume = running(CommandKind::kResumeMotion);
   out.motion_control.pause_motion = pausing();
   out.motion_control.clear_motion = sent(CommandKind::kClearMotion) || (resume && resume->phase == Phase::kClearFirst);
-  // On firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset.
-  const bool reset_p_stop = resume && resume->phase == Phase::kRelease && resume->reset_p_stop;
+  // On firmware 9 this bit is "Reset PStop2" (spec 1.3); raised only while there is one to reset, or when the robot
+  // does not go on for a reason that this firmware does not show.
+  const bool releases = resume && resume->phase == Phase::kRelease;
+  const bool reset_p_stop = releases && (resume->reset_p_stop || resume->images > kRestImages);
   out.motion_control.resume_motion = (resume && resume->phase == Phase::kRaise) || reset_p_stop;
   out.brakes_control.brakes_control_allowed = brakes_gate_;
   out.brakes_control.brakes_engaged = brakes_engaged_;

@@ -54,6 +54,8 @@ class Actions {
   void end_all_but_deactivate(Reason reason) noexcept;
   // Running ones go on to their confirmation: a bit is not dropped halfway.
   void discard_queued(Reason reason) noexcept;
+  // But a Resume does not: whoever wanted the robot to go on is gone.
+  void end_resume(Reason reason) noexcept { overtake(false, reason); }
 
   // The stop image's Pause: held until somebody resumes. On firmware 9 letting go of it clears the queue first.
   // Ends a Resume that is under way or waiting.

@@ -97,6 +97,8 @@ void Controller::follow_link(const View& view, LinkFacts link) noexcept {
     actions_.seed(view);
     sequencer_.seed(view);
     in_safety_stop_ = safety_stop(view.in);
+    stop_present_ = unresettable_stop(view.in, view.layout);
+    in_error_ = view.in.robot_status.error_code != 0;
     if (stop_on_return_ && view.in.robot_status.activated) {
       stop(Reason::kLinkLost, view.now);
     } else if (!view.in.robot_status.activated) {
@@ -116,13 +118,19 @@ void Controller::follow_robot(const View& view) noexcept {
     if (!sequencer_.idle()) sequencer_.end_all(ReceiptState::kAborted, Reason::kRobotError, status.error_code);
     sequencer_.disarm();
     velocity_.stop();
+    if (!in_error_) actions_.discard_queued(Reason::kRobotError);
   }
+  in_error_ = status.error_code != 0;
   const bool stopped = safety_stop(view.in);
-  if (stopped && !in_safety_stop_) {
+  const bool present = unresettable_stop(view.in, view.layout);  // pressed again before it was reset: a stop anew
+  if ((stopped && !in_safety_stop_) || (present && !stop_present_)) {
     velocity_.stop();
+    actions_.discard_queued(Reason::kSafetyStop);
+    actions_.end_resume(Reason::kSafetyStop);
     if (robot_may_move(view)) stop(Reason::kSafetyStop, view.now);
   }
   in_safety_stop_ = stopped;
+  stop_present_ = present;
   if (!status.activated) {
     sequencer_.end_motion(Reason::kNotActivated);
     velocity_.stop();
@@ -307,6 +315,7 @@ void Controller::release(const View& view) noexcept {
   const LossPolicy policy = arbiter_.state().on_loss;
   arbiter_.drop(ControlState::Loss::kReleased, false);
   actions_.discard_queued(Reason::kOwnerLost);
+  actions_.end_resume(Reason::kOwnerLost);
   actions_.engage_brakes();
   if (policy == LossPolicy::kStopMotion && robot_may_move(view)) {
     stop(Reason::kOwnerLost, view.now);
@@ -335,6 +344,7 @@ void Controller::lose_owner(ControlState::Loss why, const View& view) noexcept {
   sequencer_.discard_unsent(Reason::kOwnerLost);
   sequencer_.hold_proofs();
   actions_.discard_queued(Reason::kOwnerLost);
+  actions_.end_resume(Reason::kOwnerLost);
   actions_.engage_brakes();
   velocity_.reset();
   finishing_ = !stops;

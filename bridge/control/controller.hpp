@@ -93,7 +93,7 @@ class Controller {
   bool blind_ = false;
   bool stop_on_return_ = false;  // the link went while the owner's motion was under way: stop it when the link is back
   bool finishing_ = false;       // nobody has control, but queued motion is left to finish
-  bool in_safety_stop_ = false;
+  bool in_safety_stop_ = false, stop_present_ = false, in_error_ = false;
   bool shut_down_ = false;
   bool was_pausing_ = false;
   Time link_lost_at_{};

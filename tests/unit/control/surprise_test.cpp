@@ -169,6 +169,51 @@ TEST(MonitoringMode, of_the_robot_ends_control_and_the_bridge_falls_silent) {
   EXPECT_OUTCOME(b.outcome(kTakeControl), kCompleted, Reason::kNone);
 }
 
+// Found by the random faults: Resume lowers its levels first, and what came before its edge was resumed over.
+TEST(Resume, under_way_ends_when_its_owner_releases_control) {
+  Bench b;
+  b.connect_ready();
+  b.policy = LossPolicy::kFinishMotion;
+  b.outcome(kPauseMotion);
+  const auto resume = b.send(kResumeMotion);
+  b.step();
+  b.send(kReleaseControl);
+  for (int i = 0; i < 50; ++i) {
+    b.step();
+    EXPECT_FALSE(b.out.motion_control.resume_motion);
+  }
+  EXPECT_OUTCOME(b.last(resume), kAborted, Reason::kOwnerLost);
+}
+
+TEST(Resume, under_way_ends_when_a_p_stop_is_pressed) {
+  Bench b;
+  b.connect_ready();
+  b.outcome(kPauseMotion);
+  const auto resume = b.send(kResumeMotion);
+  b.step();
+  b.robot.in.safety_status.stop.p_stop2 = b.robot.in.motion_status.p_stop2 = true;
+  for (int i = 0; i < 50; ++i) {
+    b.step();
+    EXPECT_FALSE(b.out.motion_control.resume_motion && i > 0);
+  }
+  EXPECT_OUTCOME(b.last(resume), kAborted, Reason::kSafetyStop);
+}
+
+TEST(SafetyStop, discards_an_activation_that_waits_behind_a_deactivation) {
+  Bench b;
+  b.connect_ready();
+  b.outcome(kDeactivate);
+  const auto activation = b.send(kActivate);  // waits: the drives rest between the two
+  b.steps(5);
+  ASSERT_FALSE(b.out.robot_control.activate);
+  b.robot.in.safety_status.stop.p_stop2 = b.robot.in.motion_status.p_stop2 = true;
+  for (int i = 0; i < 500; ++i) {
+    b.step();
+    EXPECT_FALSE(b.out.robot_control.activate);
+  }
+  EXPECT_OUTCOME(b.last(activation), kDiscarded, Reason::kSafetyStop);
+}
+
 TEST(Shutdown, puts_the_stop_image_out_and_ends_every_command) {
   Bench b;
   b.connect_ready();
