@@ -56,12 +56,18 @@ void Arbiter::renew(const LeaseRenewal& renewal, Time now) noexcept {
   *life = {now, renewal.sequence_number};
 }
 
-void Arbiter::drop(ControlState::Loss why, bool accident) noexcept {
-  if (!state_.owned) return;
-  if (accident && !find_loser(state_.owner, state_.owner_participant)) {
-    losers_[next_loser_] = {state_.owner, state_.owner_participant};
+void Arbiter::remember_loser(const Loser& loser) noexcept {
+  auto place = std::find_if(losers_.begin(), losers_.end(), [](const Loser& l) { return l.client.empty(); });
+  if (place == losers_.end()) {
+    place = losers_.begin() + static_cast<std::ptrdiff_t>(next_loser_);
     next_loser_ = (next_loser_ + 1) % losers_.size();
   }
+  *place = loser;  // an owner is never among them: taking control took it off
+}
+
+void Arbiter::drop(ControlState::Loss why, bool accident) noexcept {
+  if (!state_.owned) return;
+  if (accident) remember_loser({state_.owner, state_.owner_participant});
   state_.owned = false;
   state_.last_owner = state_.owner;
   state_.last_loss = why;

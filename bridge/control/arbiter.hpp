@@ -81,6 +81,7 @@ class Arbiter {
 
   bool is_owner(const ClientName& client, const ParticipantId& participant) const noexcept;
   Life* life_of(const ClientName& client, const ParticipantId& participant) noexcept;
+  void remember_loser(const Loser& loser) noexcept;
   const Loser* find_loser(const ClientName& client, const ParticipantId& participant) const noexcept;
 
   Time lease_;
@@ -89,9 +90,9 @@ class Arbiter {
   Life owner_life_;
   std::optional<Contender> contender_;
   Time takes_over_at_{};
-  // The last to lose control by accident; of more than so many in a row the oldest is forgotten.
+  // Who lost control by accident and has not taken it since; where there are more, some are forgotten.
   std::array<Loser, 16> losers_{};
-  std::size_t next_loser_ = 0;
+  std::size_t next_loser_ = 0;  // to be forgotten when there is no room
 };
 
 }  // namespace meca::control
