@@ -105,7 +105,8 @@ void RobotLog::say_who_went(const control::ControlState& state, Time now, std::v
       say(kOwnerWent, Level::kInfo, who + " lost control: the bridge is stopping", now, lines);
       break;
     case Loss::kTakenOver:
-      say(kOwnerWent, Level::kWarning, who + " lost control: a client of higher priority took over", now, lines);
+      say(kOwnerWent, Level::kWarning, who + " lost control: " + std::string(state.owner.view()) + " took over", now,
+          lines);
       break;
   }
 }

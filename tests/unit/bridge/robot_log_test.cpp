@@ -96,8 +96,7 @@ TEST(RobotLog, ATakeOverIsToldFromItsAnnouncementToItsEnd) {
   record.control.contender = {};
   record.control.last_loss = control::ControlState::Loss::kTakenOver;
   EXPECT_THAT(said(log, record, 30s),
-              ElementsAre("arm1: plc lost control: a client of higher priority took over",
-                          "arm1: supervisor has control"));
+              ElementsAre("arm1: plc lost control: supervisor took over", "arm1: supervisor has control"));
 }
 
 TEST(RobotLog, ARobotErrorComesWithItsNameAndRemedy) {
