@@ -320,6 +320,55 @@ TEST(EndToEnd, AfterStopNoSampleIsGoodAnyMore) {
   EXPECT_EQ(said.link_detail().to_string(), "the bridge has stopped");
 }
 
+// From cold to a place and back, with a pause in between, on every firmware generation a Meca500 may have.
+class EndToEndOnFirmware : public testing::TestWithParam<const char*> {};
+
+TEST_P(EndToEndOnFirmware, ARobotIsFoundOutCommandedPausedAndSwitchedOff) {
+  const std::string firmware = GetParam();
+  auto config = robot("arm1");
+  config.builtin.firmware = firmware;
+  Bridge bridge(cell({config}));
+  bridge.start();
+  Client client("tester");
+  auto said = client.reader<meca500::BridgeStatus>("BridgeStatus");
+  auto safety = client.reader<meca500::SafetyStatus>("SafetyStatus");
+  auto motion = client.reader<meca500::MotionStatus>("MotionStatus");
+  auto joints = client.reader<meca500::TargetJointSet>("TargetJointSet");
+  meca500::BridgeStatus status;
+  ASSERT_TRUE(arrives<meca500::BridgeStatus>(said, "arm1", status, [](const auto& s) { return s.firmware_known(); }));
+  EXPECT_EQ(status.firmware().to_string().substr(0, firmware.size()), firmware);
+  meca500::SafetyStatus stops;
+  const bool has_safety_section = firmware[0] != '9';
+  EXPECT_TRUE(arrives<meca500::SafetyStatus>(safety, "arm1", stops, [&](const auto& s) {
+    return s.header().quality() == meca500::Quality::GOOD && s.known() == has_safety_section;
+  }));
+
+  const auto renew = [&] { client.renew("arm1"); };
+  for (const auto kind :
+       {meca500::CommandKind::TAKE_CONTROL, meca500::CommandKind::ACTIVATE, meca500::CommandKind::HOME}) {
+    ASSERT_NO_FATAL_FAILURE(client.complete("arm1", kind));
+  }
+  const auto move = client.send("arm1", meca500::CommandKind::MOTION, {30, 0, 0, 0, 0, 0},
+                                meca500::MotionCommandId::MOVE_JOINTS, true);
+  ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::PAUSE_MOTION));
+  meca500::MotionStatus queue;
+  EXPECT_TRUE(arrives<meca500::MotionStatus>(
+      motion, "arm1", queue, [](const auto& s) { return s.paused() && s.eom(); }, renew));
+  ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::RESUME_MOTION));
+  EXPECT_EQ(client.states("arm1", move).back(), ReceiptState::COMPLETED);
+  meca500::TargetJointSet sample;
+  EXPECT_TRUE(arrives<meca500::TargetJointSet>(
+      joints, "arm1", sample, [](const auto& s) { return std::abs(s.joints()[0] - 30) < 1e-3; }, renew));
+  ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::CLEAR_MOTION));
+  ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::DEACTIVATE));
+}
+
+INSTANTIATE_TEST_SUITE_P(Generation, EndToEndOnFirmware, testing::Values("9.3", "10.2", "11.3"), [](const auto& info) {
+  std::string name = info.param;
+  std::ranges::replace(name, '.', '_');
+  return name;
+});
+
 TEST(EndToEnd, ATransportThatIsNotBuiltYetSaysSo) {
   auto config = robot("arm1");
   config.type = bridge::TransportType::kProfinet;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
@@ -44,7 +45,9 @@ std::string message(const std::function<void()>& action) {
 
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& content) : path_(testing::TempDir() + "meca_ctl_decode_test.bin") {
+  // Named after the process: ctest runs tests of this program side by side.
+  explicit TemporaryFile(const std::string& content)
+      : path_(testing::TempDir() + "meca_ctl_decode_test." + std::to_string(getpid())) {
     std::ofstream(path_, std::ios::binary) << content;
   }
   ~TemporaryFile() { std::remove(path_.c_str()); }
