@@ -1,9 +1,12 @@
 #include "bridge/diagnosis.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "transports/image/error_codes.hpp"
+#include "transports/image/stop_signals.hpp"
 
 namespace meca::bridge {
 namespace {
@@ -25,6 +28,22 @@ std::string safety_caveat(const CycleRecord& record) {
   return " (safety stops are not reported by this firmware: check E-Stop and P-Stop as well)";
 }
 
+// Every stop that waits for a Resume; P-Stop 2 has bits of its own in firmware 9.
+bool waits_for_resume(const image::Inputs& in, const image::StopInfo& stop) {
+  const bool p_stop2 = stop.bit == &image::StopSignals::p_stop2 && in.motion_status.p_stop2;
+  return stop.reset_by == image::ResetBy::kResume &&
+         (p_stop2 || (in.safety_status.known && in.safety_status.stop.*stop.bit));
+}
+bool any_waits_for_resume(const image::Inputs& in) {
+  return std::ranges::any_of(image::stop_signals(),
+                             [&](const image::StopInfo& stop) { return waits_for_resume(in, stop); });
+}
+bool resettable(const image::Inputs& in, const image::StopInfo& stop) {
+  const bool p_stop2 = stop.bit == &image::StopSignals::p_stop2;
+  return in.safety_status.known ? in.safety_status.resettable.*stop.bit
+                                : p_stop2 && in.motion_status.p_stop2_resettable;
+}
+
 // ---- The way to the robot
 
 Finding monitoring_by_configuration(const CycleRecord& record) {
@@ -41,11 +60,10 @@ Finding link(const CycleRecord& record) {
     case transports::LinkState::kConnecting:
       return because("connecting to the robot" + detail, "wait; when it stays like this, check address and protocol");
     case transports::LinkState::kDown: {
-      // An R3 under E-Stop has no power and says nothing; with the product unknown that is possible too.
-      const std::string e_stop =
-          record.product_type == kProductR4 ? "" : "; a Meca500 R3 in E-Stop has no power at all";
+      // An R3 under E-Stop has no power and says nothing. Which robot it is, is asked anew with every link.
+      const std::string e_stop = record.product_type == kProductR4 ? "" : " (E-Stop takes all power of a Meca500 R3)";
       return because("no link to the robot" + detail,
-                     "check its power, the cable and the address; the bridge keeps trying" + e_stop);
+                     "check its power" + e_stop + ", the cable and the address; the bridge keeps trying");
     }
   }
   if (record.quality == Quality::kDisconnected) {
@@ -73,77 +91,80 @@ Finding stale_image(const CycleRecord& record) {
 
 // ---- Safety
 
+// The motors have no supply until the reset, and come on again by an activation; which a robot in error refuses.
+std::string reset_and_activate(const CycleRecord& record, std::string reset) {
+  return record.inputs.robot_status.error_code == 0 ? std::move(reset) + ", then 'meca-ctl activate'" : reset;
+}
+constexpr const char* kPressReset = "press Reset on the power supply";
+
 Finding e_stop(const CycleRecord& record) {
   const image::SafetyStatus& safety = record.inputs.safety_status;
-  const std::string activate = ", then 'meca-ctl activate'";
+  const image::StopInfo& info = image::stop_info(&image::StopSignals::e_stop);
+  const std::string name(info.name), release = std::string(info.remedy) + ", ";
   if (!safety.known) {
     if (!record.inputs.robot_status.e_stop) return {};
-    return because("E-Stop is active", "release it, press Reset on the power supply if it has that button" + activate);
+    return because(name + " is active",
+                   reset_and_activate(record, release + kPressReset + std::string(" if it has that button")));
   }
   if (!safety.stop.e_stop && !record.inputs.robot_status.e_stop) {
-    if (!safety.reset_ready || record.inputs.robot_status.activated) return {};
-    return because("the power supply waits for its reset", "press Reset on the power supply" + activate);
+    if (!safety.reset_ready || safety.stop.reboot || record.inputs.robot_status.activated) return {};
+    return because("the power supply waits for its reset", reset_and_activate(record, kPressReset));
   }
   // Power comes back on an R3 by itself when E-Stop is released; the Reset button is the R4's.
-  const std::string reset =
-      record.product_type == kProductR3 ? "switch the power on again" : "press Reset on the power supply";
+  const std::string reset = record.product_type == kProductR3 ? "switch the power on again" : kPressReset;
   if (safety.resettable.e_stop || safety.reset_ready) {
-    return because("E-Stop is released and waits for its reset", reset + activate);
+    return because(name + " is released and waits for its reset", reset_and_activate(record, reset));
   }
-  return because("E-Stop is active", "release it, " + reset + activate);
+  return because(name + " is active", reset_and_activate(record, release + reset));
 }
 
-// The stops beside E-Stop and P-Stop 2. Most do not exist on the Meca500; a bit that is set is said all the same.
-// inferred: the remedies, from the names; the manual describes none of these stops for the Meca500.
-struct OtherStop {
-  bool image::StopSignals::*bit;
-  std::string_view name;
-  std::string_view while_present;
-  std::string_view when_resettable;
-};
-constexpr std::string_view kReset = "press Reset on the power supply, then 'meca-ctl activate'";
-constexpr std::string_view kResume = "'meca-ctl resume'";
-constexpr std::array kOtherStops{
-    OtherStop{&image::StopSignals::p_stop1, "P-Stop 1", "release it, then reset", kReset},
-    OtherStop{&image::StopSignals::voltage_fluctuation, "a voltage fluctuation stop", "check the mains supply", kReset},
-    OtherStop{&image::StopSignals::redundancy_fault, "a redundancy fault of the safety inputs",
-              "check the wiring of both safety channels", kReset},
-    OtherStop{&image::StopSignals::standstill_fault, "a standstill fault", "find what moved the arm", kReset},
-    OtherStop{&image::StopSignals::reboot, "the stop after a reboot", "wait until the robot has started", kReset},
-    OtherStop{&image::StopSignals::operation_mode_change, "the stop after a change of operation mode",
-              "finish changing the mode", kReset},
-    OtherStop{&image::StopSignals::enabling_device_released, "the enabling device (released)",
-              "hold it in its middle position", kResume},
-    OtherStop{&image::StopSignals::connection_dropped, "a stop because the robot lost a control connection",
-              "restore that connection or let its program end", kResume},
-    OtherStop{&image::StopSignals::minor_error, "a minor error of the power supply", "read the robot's log", kReset},
-};
-
-Finding other_stops(const CycleRecord& record) {
+// The stops beside E-Stop that only the Reset button ends. Most do not exist on the Meca500; a bit that is set is said
+// all the same.
+Finding stops_for_the_reset_button(const CycleRecord& record) {
   const image::SafetyStatus& safety = record.inputs.safety_status;
   if (!safety.known) return {};
-  for (const OtherStop& stop : kOtherStops) {
-    if (!(safety.stop.*stop.bit)) continue;
+  for (const image::StopInfo& stop : image::stop_signals()) {
+    if (stop.reset_by != image::ResetBy::kResetButton || !(safety.stop.*stop.bit)) continue;
     const std::string name(stop.name);
-    if (safety.resettable.*stop.bit)
-      return because(name + " is over and waits for its reset", std::string(stop.when_resettable));
-    return because(name + " is active",
-                   std::string(stop.while_present) + ", then " + std::string(stop.when_resettable));
+    if (safety.resettable.*stop.bit) {
+      return because(name + " is over and waits for its reset", reset_and_activate(record, kPressReset));
+    }
+    return because(name + " is active", reset_and_activate(record, std::string(stop.remedy) + ", then " + kPressReset));
   }
   return {};
 }
 
-Finding p_stop2(const CycleRecord& record) {
-  const image::SafetyStatus& safety = record.inputs.safety_status;
-  const image::MotionStatus& motion = record.inputs.motion_status;
-  const bool stopped = safety.known ? safety.stop.p_stop2 || motion.p_stop2 : motion.p_stop2;
-  const bool resettable = safety.known ? safety.resettable.p_stop2 : motion.p_stop2_resettable;
-  if (!stopped) return {};
-  if (resettable) return because("P-Stop 2 is released and waits for its reset", "'meca-ctl resume'");
-  return because("P-Stop 2 is active", "release it, then 'meca-ctl resume'");
+// The stops that a Resume ends, which only an activated robot takes; nor does it home before. It takes none while the
+// cause of any of them is there.
+Finding stops_for_resume(const CycleRecord& record) {
+  const image::StopInfo *over = nullptr, *present = nullptr;
+  bool another = false;
+  for (const image::StopInfo& stop : image::stop_signals()) {
+    if (!waits_for_resume(record.inputs, stop)) continue;
+    if (resettable(record.inputs, stop)) {
+      if (over == nullptr) over = &stop;
+    } else {
+      another = present != nullptr;
+      if (present == nullptr) present = &stop;
+    }
+  }
+  if (present != nullptr) {
+    return because(std::string(present->name) + " is active",
+                   std::string(present->remedy) + (another ? "" : ", then 'meca-ctl resume'"));
+  }
+  if (over == nullptr) return {};
+  const bool pressed = over->bit == &image::StopSignals::p_stop2;
+  return because(std::string(over->name) + (pressed ? " is released" : " is over") + " and waits for its reset",
+                 "'meca-ctl resume'");
 }
 
 // ---- The robot
+
+// Resume only where the robot would take it: what else is in the way shows when the error is gone.
+std::string how_to_reset(const CycleRecord& record) {
+  const bool resumes = record.inputs.robot_status.activated && !any_waits_for_resume(record.inputs);
+  return resumes ? "'meca-ctl reset-error' and 'meca-ctl resume'" : "'meca-ctl reset-error'";
+}
 
 Finding robot_error(const CycleRecord& record) {
   const std::uint16_t code = record.inputs.robot_status.error_code;
@@ -151,12 +172,11 @@ Finding robot_error(const CycleRecord& record) {
   const std::string number = "robot error " + std::to_string(code);
   const image::ErrorInfo* known = image::find_error_code(code);
   if (known == nullptr) {
-    return because(number + ", which no document names", "read the robot's log, then try 'meca-ctl reset-error'");
+    return because(number + ", which no document names", "read the robot's log, then try " + how_to_reset(record));
   }
-  const std::string remedy(known->remedy);
-  return because(number + ": " + std::string(known->text) + " (likely: " + std::string(known->cause) + ")",
-                 known->resettable ? remedy + "; then 'meca-ctl reset-error' and 'meca-ctl resume'"
-                                   : remedy + "; reset-error does not clear this one");
+  const std::string cause = number + ": " + std::string(known->text) + " (likely: " + std::string(known->cause) + ")";
+  const std::string remedy = image::remedy_text(*known, how_to_reset(record));
+  return because(cause, known->resettable ? remedy : remedy + "; reset-error does not clear this one");
 }
 
 // inferred: that another interface in control shows this bit too.
@@ -172,9 +192,15 @@ Finding activation(const CycleRecord& record) {
   if (status.busy && control.deactivate)
     return because("the robot is being deactivated", "wait; then 'meca-ctl activate'");
   if (!status.activated) {
-    if (status.busy) return because("the robot is being activated", "wait until it is, then 'meca-ctl home'");
+    // A robot in a P-Stop can be activated, and then resumed, but not homed before.
+    const std::string home = any_waits_for_resume(record.inputs) ? "" : ", then 'meca-ctl home'";
+    if (status.busy) return because("the robot is being activated", "wait until it is" + home);
+    // An R3 never reports its E-Stop (spec 5.6).
+    const std::string e_stop = record.product_type == kProductR3
+                                   ? "release E-Stop if it is pressed (a Meca500 R3 does not report it), then "
+                                   : "";
     return because("the robot is not activated: its motors are off",
-                   "'meca-ctl activate', then 'meca-ctl home'" + safety_caveat(record));
+                   e_stop + "'meca-ctl activate'" + home + safety_caveat(record));
   }
   const image::SafetyStatus& safety = record.inputs.safety_status;
   if (safety.known && !safety.vmotor_on && !status.sim_activated) {
@@ -261,9 +287,26 @@ Finding paused(const CycleRecord& record) {
 }
 
 // In the order in which a person has to remove them.
-constexpr std::array<Finding (*)(const CycleRecord&), 14> kChecks{
-    monitoring_by_configuration, link,       firmware, stale_image, e_stop, other_stops,    robot_error,
-    monitoring_by_robot,         activation, homing,   p_stop2,     zones,  held_by_bridge, paused};
+constexpr std::array kChecks{monitoring_by_configuration,
+                             link,
+                             firmware,
+                             stale_image,
+                             monitoring_by_robot,
+                             e_stop,
+                             stops_for_the_reset_button,
+                             robot_error,
+                             activation,
+                             stops_for_resume,
+                             homing,
+                             zones,
+                             held_by_bridge,
+                             paused};
+
+// While somebody has control, everybody else's commands are refused.
+void name_the_owner(const control::ControlState& control, std::string& remedy) {
+  if (!control.owned || remedy.find("'meca-ctl ") == std::string::npos) return;
+  remedy += "; '" + std::string(control.owner) + "' has control: command from there, or let it release control first";
+}
 
 // Texts are ASCII, but for the name of an owner; a character is not cut in half.
 void cut(std::string& text) {
@@ -278,6 +321,7 @@ void cut(std::string& text) {
 Diagnosis diagnose(const CycleRecord& record) {
   for (const auto check : kChecks) {
     if (Finding found = check(record)) {
+      name_the_owner(record.control, found->remedy);
       cut(found->cause);
       cut(found->remedy);
       return *std::move(found);

@@ -21,7 +21,8 @@ std::string error_sentence(std::uint16_t code) {
   const auto* info = image::find_error_code(code);
   const std::string number = "error " + std::to_string(code);
   if (info == nullptr) return number + ", which no document names";
-  return number + " " + std::string(info->name) + ": " + std::string(info->text) + "; " + std::string(info->remedy);
+  return number + " " + std::string(info->name) + ": " + std::string(info->text) + "; " +
+         image::remedy_text(*info, "reset the error") + (info->resettable ? "" : "; a reset does not clear it");
 }
 
 }  // namespace

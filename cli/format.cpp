@@ -99,8 +99,9 @@ std::string error_text(std::uint16_t code) {
   if (code == 0) return "none";
   const auto* info = image::find_error_code(code);
   if (info == nullptr) return std::to_string(code) + ", a code that no document names";
-  return std::to_string(code) + " " + std::string(info->name) + ": " + std::string(info->text) + "; " +
-         std::string(info->remedy);
+  const std::string number = std::to_string(code);
+  return number + " " + std::string(info->name) + ": " + std::string(info->text) + "; 'meca-ctl errors " + number +
+         "' explains it";
 }
 
 std::string activity(const RobotView& view) {
@@ -121,12 +122,13 @@ std::string activity(const RobotView& view) {
   return motion_text(view) + old;
 }
 
-std::string readiness(const RobotView& view) {
+std::string readiness(const RobotView& view, std::string_view reader) {
   if (!view.bridge) return "not known: no BridgeStatus yet";
   if (view.bridge->ready()) return "yes";
   std::string text = view.bridge->cause().size() == 0 ? "no" : "no: " + str(view.bridge->cause());
   if (view.bridge->remedy().size() != 0) text += "; " + str(view.bridge->remedy());
-  return text;
+  const auto note = reader.empty() ? std::string::npos : text.find("; '" + std::string(reader) + "' has control");
+  return text.substr(0, note);
 }
 
 std::string safety(const RobotView& view) {

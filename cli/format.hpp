@@ -12,13 +12,15 @@ namespace meca::cli {
 // What the robot is doing, in a few words: "moving", "paused", "in error 1011 ...", "not connected: ...".
 std::string activity(const RobotView& view);
 
-// "yes", or why a motion command would not move the robot and what to do about it.
-std::string readiness(const RobotView& view);
+// "yes", or why a motion command would not move the robot and what to do about it. `reader`, a client's name: that it
+// has control itself is no news to it.
+std::string readiness(const RobotView& view, std::string_view reader = {});
 
 // Stop signals that are raised, and which of them may be reset; never "no stop" when the robot does not say.
 std::string safety(const RobotView& view);
 
-// "1011 CMD_FAILED_...: text; remedy" or "none".
+// "1040 CMD_FAILED: the command failed; 'meca-ctl errors 1040' explains it" or "none". What to do about it depends on
+// the rest of the robot's state: readiness() says it.
 std::string error_text(std::uint16_t code);
 
 // "free", or who has control since when. `now_ns` is Unix time.

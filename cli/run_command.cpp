@@ -105,7 +105,8 @@ ExitCode move_for_a_while(Client& client, const Observer& observer, const Invoca
   const RobotView& view = observer.robots().at(client.robot());
   if (!wait_until_owner(client)) return report.error(ExitCode::kRefused, lost_control(client));
   if (view.bridge && !view.bridge->ready()) {
-    return report.error(ExitCode::kRefused, client.robot() + " would not move: " + readiness(view));
+    const std::string us = client.control()->owner().c_str();
+    return report.error(ExitCode::kRefused, client.robot() + " would not move: " + readiness(view, us));
   }
   const bool kept = stream(client, call.velocity, seconds_of(*call.duration_s));
   VelocityPlan stop = call.velocity;

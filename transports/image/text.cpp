@@ -35,7 +35,7 @@ std::string error_hint(std::uint16_t code) {
   const auto* error = find_error_code(code);
   if (error == nullptr) return "a code that no document names";
   return std::string(error->name) + ": " + std::string(error->text) + " (" + std::string(error->cause) + "); " +
-         std::string(error->remedy) + (error->resettable ? "" : " (ResetError does not clear it)");
+         remedy_text(*error, "ResetError") + (error->resettable ? "" : " (ResetError does not clear it)");
 }
 
 std::string dynamic_hint(std::uint32_t id, Layout layout) {

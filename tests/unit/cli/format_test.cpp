@@ -85,6 +85,16 @@ TEST(Readiness, IsTheBridgesCauseAndRemedy) {
   EXPECT_EQ(readiness(view), "no: P-Stop 2 is active; release it, then resume");
 }
 
+TEST(Readiness, DoesNotTellAClientThatItHasControlItself) {
+  auto view = standing_robot();
+  view.bridge->ready(false);
+  view.bridge->cause("motion is paused");
+  view.bridge->remedy("'meca-ctl resume'; 'meca-ctl@host:1' has control: command from there");
+  EXPECT_EQ(readiness(view, "meca-ctl@host:1"), "no: motion is paused; 'meca-ctl resume'");
+  EXPECT_EQ(readiness(view, "tablet"), readiness(view));
+  EXPECT_THAT(readiness(view), HasSubstr("'meca-ctl@host:1' has control"));
+}
+
 TEST(Safety, NamesSignalsAndWhatMayBeReset) {
   auto view = standing_robot();
   EXPECT_EQ(safety(view), "no stop signal; motor supply on");

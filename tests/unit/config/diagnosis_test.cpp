@@ -30,8 +30,6 @@ CycleRecord moving_robot() {
   r.inputs.motion_status.fifo_space = 13000;
   r.inputs.safety_status.known = true;
   r.inputs.safety_status.vmotor_on = true;
-  r.control.owned = true;
-  r.control.owner = control::ClientName("cell-plc");
   return r;
 }
 
@@ -54,7 +52,12 @@ std::ostream& operator<<(std::ostream& out, const Situation& s) { return out << 
 
 const Situation kSituations[] = {
     {"NothingInTheWay", [](CycleRecord&) {}, "", ""},
-    {"NobodyOwnsControl", [](CycleRecord& r) { r.control = {}; }, "", ""},
+    {"SomebodyHasControl",
+     [](CycleRecord& r) {
+       r.control.owned = true;
+       r.control.owner = control::ClientName("cell-plc");
+     },
+     "", ""},
     {"QueueEmptyAndIdle", [](CycleRecord& r) { r.inputs.motion_status.eob = r.inputs.motion_status.eom = true; }, "",
      ""},
     {"BrakesBitOfARealRobot", [](CycleRecord& r) { r.inputs.robot_status.brakes_engaged = true; }, "", ""},
@@ -84,14 +87,14 @@ const Situation kSituations[] = {
      },
      "no link to the robot: no reply to Forward Open",
      "check its power, the cable and the address; the bridge keeps trying"},
-    {"LinkDownR3",
+    {"LinkDownOfAnUnknownProduct",
      [](CycleRecord& r) {
        r.link = LinkState::kDown;
        r.quality = Quality::kDisconnected;
-       r.product_type = 3;
+       r.product_type = 0;
      },
      "no link to the robot",
-     "check its power, the cable and the address; the bridge keeps trying; a Meca500 R3 in E-Stop has no power at all"},
+     "check its power (E-Stop takes all power of a Meca500 R3), the cable and the address; the bridge keeps trying"},
     {"LinkComingUp",
      [](CycleRecord& r) {
        r.link = LinkState::kConnecting;
@@ -169,13 +172,38 @@ const Situation kSituations[] = {
     {"ResettableError", [](CycleRecord& r) { r.inputs.robot_status.error_code = 1012; },
      "robot error 1012: the path runs into a singularity (likely: a linear move through or close to a singular "
      "posture)",
-     "use a joint move, shift the path, or let the robot choose the configuration; then 'meca-ctl reset-error' and "
-     "'meca-ctl resume'"},
+     "'meca-ctl reset-error' and 'meca-ctl resume', then use a joint move, shift the path, or let the robot choose the "
+     "configuration"},
+    {"ErrorThatSomethingInTheCellCauses", [](CycleRecord& r) { r.inputs.robot_status.error_code = 3005; },
+     "robot error 3005: the motion failed (likely: a collision, a blocked joint or an overload)",
+     "free the arm, check payload and path, then 'meca-ctl reset-error' and 'meca-ctl resume'"},
+    {"ErrorOfARobotThatIsNotActivated",
+     [](CycleRecord& r) {
+       r.inputs.robot_status.error_code = 1013;
+       r.inputs.robot_status.activated = false;
+     },
+     "robot error 1013: the robot could not be activated (likely: a drive did not start or a safety stop came in "
+     "between)",
+     "clear all safety stops, then 'meca-ctl reset-error', then activate again"},
+    {"ErrorUnderAPStop",
+     [](CycleRecord& r) {
+       r.inputs.robot_status.error_code = 3005;
+       r.inputs.safety_status.stop.p_stop2 = true;
+     },
+     "robot error 3005: the motion failed (likely: a collision, a blocked joint or an overload)",
+     "free the arm, check payload and path, then 'meca-ctl reset-error'"},
+    {"EStopOfARobotInError",
+     [](CycleRecord& r) {
+       r.inputs.robot_status.error_code = 3005;
+       r.inputs.safety_status.stop.e_stop = true;
+     },
+     "E-Stop is active", "release it, press Reset on the power supply"},
     {"PermanentError", [](CycleRecord& r) { r.inputs.robot_status.error_code = 1024; },
      "robot error 1024: the robot has lost its mastering (likely: calibration data of a joint is gone)",
      "do not move the robot; contact the vendor's support; reset-error does not clear this one"},
     {"ErrorThatNoDocumentNames", [](CycleRecord& r) { r.inputs.robot_status.error_code = 65535; },
-     "robot error 65535, which no document names", "read the robot's log, then try 'meca-ctl reset-error'"},
+     "robot error 65535, which no document names",
+     "read the robot's log, then try 'meca-ctl reset-error' and 'meca-ctl resume'"},
     {"MonitoringModeOfTheRobot",
      [](CycleRecord& r) { r.inputs.robot_status.monitoring_mode = r.control.monitoring_only = true; },
      "the robot lets this connection only monitor",
@@ -187,6 +215,14 @@ const Situation kSituations[] = {
      "'meca-ctl activate', then 'meca-ctl home' (safety stops are not reported by this firmware: check E-Stop and "
      "P-Stop as well)",
      firmware9_robot},
+    {"NotActivatedR3",
+     [](CycleRecord& r) {
+       r.inputs.robot_status.activated = false;
+       r.product_type = 3;
+     },
+     "the robot is not activated: its motors are off",
+     "release E-Stop if it is pressed (a Meca500 R3 does not report it), then 'meca-ctl activate', then 'meca-ctl "
+     "home'"},
     {"BeingActivated",
      [](CycleRecord& r) {
        r.inputs.robot_status.activated = false;
@@ -228,12 +264,16 @@ const Situation kSituations[] = {
     {"ClearMotionSet", [](CycleRecord& r) { r.outputs.motion_control.clear_motion = true; },
      "the bridge is clearing the robot's queue (ClearMotion is set)", "wait until it is done, then 'meca-ctl resume'"},
     {"PausedByTheBridgeForItsOwner",
-     [](CycleRecord& r) { r.outputs.motion_control.pause_motion = r.inputs.motion_status.paused = true; },
-     "the bridge holds the robot (PauseMotion is set)", "'meca-ctl resume'"},
+     [](CycleRecord& r) {
+       r.outputs.motion_control.pause_motion = r.inputs.motion_status.paused = true;
+       r.control.owned = true;
+       r.control.owner = control::ClientName("cell-plc");
+     },
+     "the bridge holds the robot (PauseMotion is set)",
+     "'meca-ctl resume'; 'cell-plc' has control: command from there, or let it release control first"},
     {"PausedByTheBridgeBecauseTheOwnerIsGone",
      [](CycleRecord& r) {
        r.outputs.motion_control.pause_motion = true;
-       r.control = {};
        r.control.last_owner = control::ClientName("cell-plc");
        r.control.last_loss = ControlState::Loss::kLeaseExpired;
      },
@@ -241,7 +281,6 @@ const Situation kSituations[] = {
     {"PausedByAClientThatLeft",
      [](CycleRecord& r) {
        r.outputs.motion_control.pause_motion = true;
-       r.control = {};
        r.control.last_owner = control::ClientName("meca-ctl@host:1");
        r.control.last_loss = ControlState::Loss::kReleased;
      },
@@ -293,8 +332,9 @@ TEST(Diagnosis, SaysTheMostImportantCauseFirst) {
       {[](CycleRecord& r) { r.inputs.safety_status.stop.reboot = true; }, "the stop after a reboot"},
       {[](CycleRecord& r) { r.inputs.robot_status.error_code = 3005; }, "robot error 3005"},
       {[](CycleRecord& r) { r.inputs.robot_status.activated = false; }, "the robot is not activated"},
-      {[](CycleRecord& r) { r.inputs.robot_status.homed = false; }, "the robot is not homed"},
       {[](CycleRecord& r) { r.inputs.safety_status.stop.p_stop2 = true; }, "P-Stop 2"},
+      {[](CycleRecord& r) { r.inputs.safety_status.stop.connection_dropped = true; }, "a stop because"},
+      {[](CycleRecord& r) { r.inputs.robot_status.homed = false; }, "the robot is not homed"},
       {[](CycleRecord& r) { r.inputs.robot_status.collision_status = true; }, "the robot sees an imminent"},
       {[](CycleRecord& r) { r.inputs.robot_status.work_zone_status = true; }, "the robot is at the border"},
       {[](CycleRecord& r) { r.outputs.motion_control.clear_motion = true; }, "the bridge is clearing"},
@@ -309,6 +349,27 @@ TEST(Diagnosis, SaysTheMostImportantCauseFirst) {
     EXPECT_TRUE(diagnosis.cause.starts_with(facts[first].begins))
         << diagnosis.cause << "\nand not: " << facts[first].begins;
   }
+}
+
+TEST(Diagnosis, NamesNoCommandAsARemedyWhereTheRobotTakesNone) {
+  CycleRecord record = moving_robot();
+  record.inputs.robot_status.monitoring_mode = record.control.monitoring_only = true;
+  record.inputs.safety_status.stop.e_stop = true;
+  record.inputs.robot_status.error_code = 3005;
+  EXPECT_EQ(bridge::diagnose(record).cause, "the robot lets this connection only monitor");
+}
+
+// None is reset while the cause of another one is there.
+TEST(Diagnosis, OfTwoStopsThatAResumeEndsSaysFirstTheOneThatIsStillPressed) {
+  CycleRecord record = moving_robot();
+  auto& safety = record.inputs.safety_status;
+  safety.stop.p_stop2 = safety.stop.connection_dropped = true;
+  EXPECT_EQ(bridge::diagnose(record).remedy, "release it");
+  safety.resettable.p_stop2 = true;
+  EXPECT_EQ(bridge::diagnose(record).cause, "a stop because the robot lost a control connection is active");
+  EXPECT_EQ(bridge::diagnose(record).remedy, "restore that connection or let its program end, then 'meca-ctl resume'");
+  safety.resettable.connection_dropped = true;
+  EXPECT_EQ(bridge::diagnose(record).cause, "P-Stop 2 is released and waits for its reset");
 }
 
 TEST(Diagnosis, OfEveryErrorCodeFitsIntoBridgeStatusUncut) {

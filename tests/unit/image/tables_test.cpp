@@ -9,11 +9,14 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <vector>
 
 #include "tests/unit/image/support.hpp"
 #include "transports/image/dynamic_data_types.hpp"
 #include "transports/image/error_codes.hpp"
+#include "transports/image/field_table.hpp"
 #include "transports/image/motion_commands.hpp"
+#include "transports/image/stop_signals.hpp"
 
 namespace meca::image {
 namespace {
@@ -175,13 +178,63 @@ TEST(ErrorCodes, AreSeventyFiveWithTextCauseAndRemedy) {
   EXPECT_EQ(error_codes().size(), 75U);
   for (const auto& error : error_codes()) {
     EXPECT_EQ(find_error_code(error.code), &error) << "codes are unique";
-    for (const auto text : {error.text, error.cause, error.remedy}) {
-      EXPECT_FALSE(text.empty() || text.ends_with('.')) << error.name;
+    for (const auto text : {error.text, error.cause}) EXPECT_FALSE(text.empty() || text.ends_with('.')) << error.name;
+    EXPECT_FALSE(error.remedy.ends_with('.') || error.afterwards.ends_with('.')) << error.name;
+    if (error.resettable) {
+      EXPECT_FALSE(error.remedy.empty() && error.afterwards.empty()) << error.name << " would only come again";
+    } else {
+      EXPECT_FALSE(error.remedy.empty()) << error.name;
+      EXPECT_TRUE(error.afterwards.empty()) << error.name << ": nothing comes after a reset that does not help";
     }
   }
   EXPECT_EQ(find_error_code(0), nullptr);
   EXPECT_EQ(find_error_code(3004), nullptr) << "end of motion is a status, no error";
   EXPECT_EQ(find_error_code(3041)->name, "COLLISION_ERROR");
+}
+
+TEST(ErrorCodes, HaveARemedyInTheOrderInWhichAPersonDoesIt) {
+  EXPECT_EQ(remedy_text(*find_error_code(1014), "ResetError"),
+            "free the arm and the gripper, then ResetError, then home again");
+  EXPECT_EQ(remedy_text(*find_error_code(3005), "ResetError"), "free the arm, check payload and path, then ResetError");
+  EXPECT_EQ(remedy_text(*find_error_code(1022), "ResetError"), "ResetError, then start saving before ending it");
+  EXPECT_EQ(remedy_text(*find_error_code(3033), "ResetError"), "contact the vendor's support");
+  for (const auto& error : error_codes()) {
+    EXPECT_EQ(std::string(error.remedy).find("reset"), std::string::npos) << error.name << " would say it twice";
+    EXPECT_EQ(std::string(error.afterwards).find("reset"), std::string::npos) << error.name;
+  }
+}
+
+TEST(StopSignals, AreTheBitsOfTheSafetySectionWithTextCauseAndRemedy) {
+  std::size_t bits = 0;
+  for (const auto& field : kInputFields) {
+    bits += field.section == rows::kSafety && (field.byte == 128 || field.byte == 129);
+  }
+  ASSERT_EQ(stop_signals().size(), bits);
+  std::size_t last = 0;
+  for (const auto& stop : stop_signals()) {
+    EXPECT_EQ(&stop_info(stop.bit), &stop) << stop.name;
+    EXPECT_EQ(find_stop_by_code(stop.status_code), &stop) << stop.name;
+    EXPECT_EQ(find_error_code(stop.status_code), nullptr) << stop.name << " is a stop, no error";
+    for (const auto text : {stop.name, stop.text, stop.cause, stop.remedy}) {
+      EXPECT_FALSE(text.empty() || text.ends_with('.')) << stop.field;
+    }
+    const auto& field = field_of(stop);
+    EXPECT_EQ(field.name, stop.field);
+    EXPECT_GT(field.first_bit(), last) << stop.field << ": in the order of the bits";
+    last = field.first_bit();
+    EXPECT_EQ(resettable_field_of(stop).first_bit(), field.first_bit() + 32) << stop.field;
+    Inputs inputs;
+    std::get<Place<Inputs, bool>>(field.place).write(inputs) = true;
+    EXPECT_TRUE(inputs.safety_status.stop.*stop.bit) << stop.field << " is another bit in the field table";
+  }
+}
+
+TEST(StopSignals, AMeca500HasFour) {
+  std::vector<std::string_view> names;
+  for (const auto& stop : stop_signals()) {
+    if (field_of(stop).robots == Robots::kMeca500) names.push_back(stop.field);
+  }
+  EXPECT_EQ(names, (std::vector<std::string_view>{"EStop", "PStop2", "Reboot", "ConnectionDropped"}));
 }
 
 // ---- against the vendor's Python library 3.0.3, reference only
