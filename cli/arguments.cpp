@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 
+#include "cli/errors.hpp"
 #include "cli/plan.hpp"
 #include "cli/suggest.hpp"
 
@@ -23,6 +24,7 @@ Examples:
   meca-ctl velocity lin-wrf 0 0 -20 0 0 0 --for 1.5
   meca-ctl send SetJointVel 50                any command of the manual's table, by name or number
   meca-ctl --robot arm2 watch                 live view; with --json one object a line
+  meca-ctl errors 1007                        what an error or stop means and what to do; all without a code
   meca-ctl decode --input image.bin --firmware 11.3
 
 Exit codes: 0 done, 1 refused, aborted or discarded, 2 arguments, 4 no bridge or no DDS, 5 time-out, 130 interrupted.
@@ -32,7 +34,7 @@ meca-ctl is no safety device: the emergency stop is the button.)";
 // What the subcommands collect before it is checked.
 struct Words {
   std::vector<std::string> arguments;
-  std::string first;  // on | off, joints | lin-wrf | lin-trf, ID or NAME
+  std::string first;  // on | off, joints | lin-wrf | lin-trf, ID or NAME, CODE
   std::string byte_order = "little";
   bool no_shared_memory = false;
   bool use_variables = false;
@@ -165,6 +167,22 @@ void add_decode(CLI::App& app, Invocation& call, Words& words, std::map<const CL
       ->capture_default_str();
 }
 
+void add_errors(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
+  auto* sub = add_verb(
+      app, "errors", "What the robot's error codes and stops mean, and what to do",
+      [](Invocation& c, const Words& w) {
+        c.verb = Verb::kErrors;
+        c.trouble = w.first;
+        if (!c.trouble.empty()) find_trouble(c.trouble);
+        if (c.markdown && (c.json || !c.trouble.empty())) {
+          throw UsageError("errors --markdown prints the whole page, without a code and without --json");
+        }
+      },
+      finishers);
+  sub->add_option("code", words.first, "Code or name of one of them: 1007, JOINT_OVER_LIMIT, EStop");
+  sub->add_flag("--markdown", call.markdown, "The page docs/errors.md");
+}
+
 // CLI11 takes "-10" for a number but ".5" behind a minus for an option.
 void spell_out_fractions(std::vector<std::string>& words) {
   for (auto& word : words) {
@@ -218,6 +236,7 @@ std::variant<Invocation, Answer> parse_arguments(std::vector<std::string> words)
   add_commands(app, collected, finishers);
   add_velocity(app, call, collected, finishers);
   add_decode(app, call, collected, finishers);
+  add_errors(app, call, collected, finishers);
 
   spell_out_fractions(words);
   std::ranges::reverse(words);  // CLI11 takes them from the back

@@ -31,6 +31,7 @@ enum class Verb : std::uint8_t {
   kDecode,
   kHealth,
   kReceipts,
+  kErrors,
 };
 
 // One command for the bridge, without robot, client and id.
@@ -72,6 +73,10 @@ struct Invocation {
   std::string input;
   std::string firmware = "11";
   bool big_endian = false;
+
+  // errors
+  std::string trouble;  // code or name, known to find_trouble(); empty: all
+  bool markdown = false;
 };
 
 }  // namespace meca::cli

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/decode.hpp"
+#include "cli/errors.hpp"
 #include "cli/format.hpp"
 #include "cli/names.hpp"
 #include "cli/plan.hpp"
@@ -117,6 +118,18 @@ ExitCode run_decode(const Invocation& call, const Report& report) {
   return ExitCode::kDone;
 }
 
+ExitCode run_errors(const Invocation& call, const Report& report) {
+  if (call.trouble.empty()) {
+    report.text(call.markdown ? troubles_page() : troubles_list());
+    for (const Trouble& trouble : all_troubles()) report.object(to_json(trouble));
+  } else {
+    const Trouble trouble = find_trouble(call.trouble);
+    report.text(explain(trouble));
+    report.object(to_json(trouble));
+  }
+  return ExitCode::kDone;
+}
+
 ExitCode run(const Invocation& call, const Report& report) {
   switch (call.verb) {
     case Verb::kStatus:
@@ -137,6 +150,8 @@ ExitCode run(const Invocation& call, const Report& report) {
       return run_health(call, report);
     case Verb::kReceipts:
       return run_receipts(call, report);
+    case Verb::kErrors:
+      return run_errors(call, report);
   }
   return ExitCode::kArguments;
 }

@@ -247,6 +247,17 @@ TEST_F(MecaCtl, WaitingEndsWithExitCodeFiveAndSaysThatTheCommandGoesOn) {
   EXPECT_THAT(result.output, HasSubstr("it goes on"));
 }
 
+// No bridge is asked, so that it answers at a desk as well.
+TEST(MecaCtlErrors, ExplainsACodeWithoutABridge) {
+  const auto one = run({MECA_CTL, "errors", "1007"});
+  EXPECT_EQ(one.exit_code, 0);
+  EXPECT_THAT(one.output, HasSubstr("1007  JOINT_OVER_LIMIT\n"));
+  EXPECT_EQ(lines_of(run({MECA_CTL, "errors", "--json"}).output).size(), 86U);
+  const auto unknown = run({MECA_CTL, "errors", "4711"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output, HasSubstr("no document names an error or stop '4711'"));
+}
+
 TEST_F(MecaCtl, TyposAreAnsweredWithoutTouchingTheRobot) {
   const auto typo = ctl({"actvate"});
   EXPECT_EQ(typo.exit_code, 2);

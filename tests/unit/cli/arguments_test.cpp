@@ -220,6 +220,15 @@ TEST(Arguments, HelpIsNoMistakeAndTeachesWithExamplesAndExitCodes) {
 
 TEST(Arguments, NoCommandAtAllShowsTheHelpAsAMistake) { EXPECT_THAT(refusal({}), HasSubstr("Subcommands:")); }
 
+TEST(Arguments, ErrorsTakesOneKnownCodeOrNone) {
+  EXPECT_EQ(understood({"errors"}).verb, Verb::kErrors);
+  EXPECT_EQ(understood({"errors", "1007"}).trouble, "1007");
+  EXPECT_TRUE(understood({"errors", "--markdown"}).markdown);
+  EXPECT_THAT(refusal({"errors", "4711"}), HasSubstr("no document names an error or stop '4711'"));
+  EXPECT_THAT(refusal({"errors", "1007", "3005"}), HasSubstr("errors does not take '3005'"));
+  EXPECT_THAT(refusal({"errors", "1007", "--markdown"}), HasSubstr("prints the whole page"));
+}
+
 TEST(Arguments, DecodeTakesInputFirmwareAndByteOrder) {
   const auto call = understood({"decode", "--input", "-", "--firmware", "10.2", "--byte-order", "big"});
   EXPECT_EQ(call.verb, Verb::kDecode);
