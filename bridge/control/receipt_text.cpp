@@ -68,6 +68,14 @@ std::string error_text(std::uint16_t code) {
   return text;
 }
 
+std::string robot_error_text(const Receipt& r) {
+  const image::ErrorInfo* info = image::find_error_code(r.robot_error);
+  const bool permanent = info && !info->resettable;
+  return "the robot is in " + error_text(r.robot_error) +
+         (permanent ? "; a reset does not clear it: " + std::string(info->remedy)
+                    : "; remove its cause and reset it first");
+}
+
 struct ArgumentNames {
   std::string name, unit;
 };
@@ -117,21 +125,34 @@ std::string count_text(const Receipt& r) {
   const auto plural = [](double n) { return number(n) + (n == 1 ? " argument" : " arguments"); };
   std::string text = subject(r) + " got " + plural(r.value) + " and takes ";
   if (r.minimum != r.maximum) return text + number(r.minimum) + " to " + plural(r.maximum);
-  return text + (r.maximum == 0 ? "none" : plural(r.maximum));
+  text += r.maximum == 0 ? "none" : plural(r.maximum);
+  const image::MotionCommandInfo* info =
+      r.kind == CommandKind::kMotion ? image::find_motion_command(r.motion_command_id) : nullptr;
+  if (!info) return text;
+  for (std::size_t i = 0; i < info->arguments.size(); ++i) {
+    text += (i == 0 ? ": " : ", ") + std::string(info->arguments[i].name);
+  }
+  return text;
 }
 
 std::string unknown_text(const Receipt& r) {
-  if (r.kind != CommandKind::kMotion) return "there is no such kind of command";
+  if (r.kind != CommandKind::kMotion) return "there is no such kind of command; CommandKind lists those there are";
   const image::MotionCommandInfo* info = image::find_motion_command(r.motion_command_id);
-  if (!info) return "there is no motion command " + std::to_string(r.motion_command_id);
+  if (!info) {
+    return "there is no motion command " + std::to_string(r.motion_command_id) +
+           "; the robot manual's table of MotionCommandID lists those there are";
+  }
   const std::string name(info->name);
   if (info->command_class == image::CommandClass::kVelocity) {
     return name + " is a velocity command: send it as a VelocityCommand stream";
   }
   if (info->command_class == image::CommandClass::kOtherRobots) {
-    return name + " is a command of other robots; a Meca500 does not have it";
+    return name + " is a command of other robots; a Meca500 does not have it, leave it out";
   }
-  return "this robot's firmware does not know " + name + " (or variables as its arguments)";
+  const std::string variables = "variables as arguments, which came with firmware 11; send numbers";
+  if (info->since == image::Layout::kFirmware9) return "this robot's firmware does not know " + variables;
+  return "this robot's firmware does not know " + name + ", which came with firmware " +
+         std::string(image::to_string(info->since)) + ", or not " + variables;
 }
 
 // "'cell-plc' has control of the robot (priority 10, yours is 0)"
@@ -165,9 +186,9 @@ std::string not_owner_text(const Receipt& r) {
 
 std::string owner_lost_text(const Receipt& r) {
   if (r.kind == CommandKind::kTakeControl) {
-    return "its client gave up, or did not renew its lease while the owner's grace ran";
+    return "its client gave up, or did not renew its lease while the owner's grace ran; renew it while waiting";
   }
-  return "its client lost or released control";
+  return "its client lost or released control; take control and send it again if it is still wanted";
 }
 
 std::string not_allowed_text(const Receipt& r) {
@@ -175,17 +196,52 @@ std::string not_allowed_text(const Receipt& r) {
     return "releasing the brakes lets the arm fall: hold the arm and send it again within " + number(r.maximum) +
            " s (with a new command id)";
   }
-  return "the configuration does not allow " + subject(r);
+  return "the configuration does not allow " + subject(r) + "; control: {allow_brakes: true} of this robot would";
+}
+
+std::string not_activated_text(const Receipt& r) {
+  if (r.state != ReceiptState::kRejected) return "the robot's motors went off; activate it again first";
+  return "the robot is not activated; activate it first";
+}
+
+// Which stop it is, BridgeStatus says: when this is read it may be another one.
+std::string safety_stop_text(const Receipt& r) {
+  const std::string stop = "a safety stop is active; remove its cause, then ";
+  const std::string reset = "press Reset on the power supply and activate";
+  if (r.kind == CommandKind::kActivate) return stop + reset + " again";
+  return stop + "resume (after an E-Stop: " + reset + ")";
+}
+
+std::string paused_text(const Receipt& r) {
+  if (r.kind == CommandKind::kResumeMotion) return "somebody paused the robot meanwhile; resume it again";
+  return "motion is paused after a stop; resume it first";
 }
 
 std::string time_out_text(const Receipt& r) {
   if (r.kind == CommandKind::kMotion) {
-    return r.state == ReceiptState::kDiscarded ? "a command before it was not acknowledged by the robot in time"
-                                               : "the robot did not acknowledge or clear it in time; whether it took "
-                                                 "the command is not known";
+    return r.state == ReceiptState::kDiscarded
+               ? "a command before it was not acknowledged by the robot in time; it was not sent, look where the arm "
+                 "is "
+                 "before sending it again"
+               : "the robot did not acknowledge or clear it in time; whether it took the command is not known, look "
+                 "where the arm is before sending it again";
   }
-  return "the robot did not confirm " + subject(r) + " in time" +
-         (r.robot_error != 0 ? "; it shows " + error_text(r.robot_error) : "");
+  const std::string text = "the robot did not confirm it in time";
+  if (r.robot_error != 0) return text + "; " + robot_error_text(r);
+  if (r.kind == CommandKind::kActivate) return text + "; check E-Stop, which a Meca500 R3 does not report";
+  return text + "; look at its state before trying again";
+}
+
+std::string link_lost_text(const Receipt& r) {
+  return r.state == ReceiptState::kDiscarded
+             ? "the link to the robot was lost before it was executed; send it again when the link is back"
+             : "the link to the robot was lost; how far it got is not known, look where the arm is before sending it "
+               "again";
+}
+
+std::string wrong_state_text(const Receipt& r) {
+  if (r.kind == CommandKind::kSetHostTime) return "the clock of the bridge's computer is not set; set it first";
+  return "the robot takes it only while it is deactivated; deactivate the robot first";
 }
 
 std::string reason_text(const Receipt& r) {
@@ -195,11 +251,12 @@ std::string reason_text(const Receipt& r) {
     case Reason::kNotOwner:
       return not_owner_text(r);
     case Reason::kMonitoringOnly:
-      return "this bridge may only monitor this robot";
+      return "this bridge may only monitor this robot; BridgeStatus says whether its configuration or the robot "
+             "forbids more";
     case Reason::kNoLink:
-      return "there is no link to the robot";
+      return "there is no link to the robot; the bridge keeps trying, BridgeStatus says what is missing";
     case Reason::kFirmwareUnknown:
-      return "the robot's firmware is not known yet, or not the one configured";
+      return "the robot's firmware is not known yet, or not the one configured; BridgeStatus says which";
     case Reason::kUnknownCommand:
       return unknown_text(r);
     case Reason::kArgumentCount:
@@ -207,33 +264,31 @@ std::string reason_text(const Receipt& r) {
     case Reason::kArgumentRange:
       return range_text(r);
     case Reason::kNotActivated:
-      return "the robot is not activated";
+      return not_activated_text(r);
     case Reason::kNotHomed:
-      return "the robot is not homed";
+      return "the robot is not homed; home it first";
     case Reason::kWrongState:
-      return r.kind == CommandKind::kSetHostTime ? "the bridge's own clock is not set"
-                                                 : subject(r) + " is possible only while the robot is deactivated";
+      return wrong_state_text(r);
     case Reason::kRobotError:
-      return "the robot is in " + error_text(r.robot_error) + "; reset it first";
+      return robot_error_text(r);
     case Reason::kSafetyStop:
-      return "a safety stop is active; remove its cause, then resume";
+      return safety_stop_text(r);
     case Reason::kPaused:
-      return "motion is paused after a stop; resume it first";
+      return paused_text(r);
     case Reason::kQueueFull:
       return "the bridge's queue is full; wait for receipts before sending more";
     case Reason::kTimeOut:
       return time_out_text(r);
     case Reason::kLinkLost:
-      return r.state == ReceiptState::kDiscarded ? "the link to the robot was lost before it was executed"
-                                                 : "the link to the robot was lost; how far it got is not known";
+      return link_lost_text(r);
     case Reason::kOwnerLost:
       return owner_lost_text(r);
     case Reason::kCleared:
-      return "the motion queue was cleared";
+      return "the motion queue was cleared; send it again if it is still wanted";
     case Reason::kNotAllowed:
       return not_allowed_text(r);
     case Reason::kShutdown:
-      return "the bridge is shutting down";
+      return "the bridge is shutting down; send it again when it is back";
     case Reason::kDuplicate:
       return "command id " + std::to_string(r.command_id) +
              " was used before, for another command or too long ago to remember; ids count up";

@@ -40,7 +40,8 @@ TEST(Refusal, counts_arguments) {
   b.connect_ready();
   const Receipt r = b.outcome(b.send(b.motion(image::kMoveJoints, {1, 2, 3})));
   EXPECT_OUTCOME(r, kRejected, Reason::kArgumentCount);
-  EXPECT_EQ(describe(r), "MoveJoints refused: MoveJoints got 3 arguments and takes 6 arguments");
+  EXPECT_EQ(describe(r),
+            "MoveJoints refused: MoveJoints got 3 arguments and takes 6 arguments: q1, q2, q3, q4, q5, q6");
   EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kSetBlending, {1, 2}))), kRejected, Reason::kArgumentCount);
   EXPECT_OUTCOME(b.outcome(kActivate, {1}), kRejected, Reason::kArgumentCount);
   EXPECT_OUTCOME(b.outcome(kSimMode), kRejected, Reason::kArgumentCount);
