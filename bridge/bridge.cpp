@@ -18,6 +18,13 @@
 namespace meca::bridge {
 namespace {
 
+sim::ToolType tool_of(const std::string& name) {
+  if (name == "MEGP25E") return sim::ToolType::kMegp25e;
+  if (name == "MEGP25LS") return sim::ToolType::kMegp25ls;
+  if (name == "MPM500") return sim::ToolType::kMpm500;
+  return sim::ToolType::kNone;
+}
+
 sim::RobotOptions model_of(const RobotConfig& robot) {
   const auto& config = robot.builtin;
   const auto version = parse_firmware(config.firmware).value_or(transports::FirmwareVersion{});
@@ -29,6 +36,7 @@ sim::RobotOptions model_of(const RobotConfig& robot) {
   if (version.build != 0) options.firmware_build = version.build;
   options.serial_number = config.serial_number;
   options.noise = config.noise;
+  options.tool = tool_of(config.tool);
   options.seed = config.serial_number;
   // One millisecond, not none: what takes no time at all shows no Busy, and clients wait for its end.
   if (config.instant_homing) {

@@ -57,6 +57,9 @@ void read_builtin(const Section& transport, BuiltinConfig& out) {
   transport.integer("serial_number", 0, 4294967295, out.serial_number);
   transport.flag("instant_homing", out.instant_homing);
   transport.flag("noise", out.noise);
+  static constexpr std::array<std::string_view, 4> kTools{"none", "MEGP25E", "MEGP25LS", "MPM500"};
+  std::size_t tool = 0;
+  if (transport.choice("tool", kTools, tool)) out.tool = kTools[tool];
 }
 
 void read_interface(const Section& transport, std::string& out) {

@@ -140,8 +140,6 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
       return {f(s.blending), f(s.velocity_timeout)};
     case 22:
       return speeds(source);
-    case 23:
-      return {f(s.gripper_force), f(s.gripper_velocity)};
     case 24:
       return {f(s.torque_severity), f(s.torque_mode)};
     case 25:
@@ -190,6 +188,11 @@ std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) 
       return actual_configuration(s);
     case 46:
       return accelerometer(s);
+    case 16:
+    case 23:
+    case 52:
+    case 53:
+      return s.tool.values(type);
     default:
       return configured(type, s);
   }

@@ -6,6 +6,7 @@
 
 #include "sim/robot.hpp"
 #include "sim/settings.hpp"
+#include "sim/tool.hpp"
 #include "sim/user_limits.hpp"
 
 namespace meca::sim {
@@ -15,6 +16,7 @@ struct DynamicSource {
   const RobotOptions& options;
   const Settings& settings;
   const UserLimits& limits;
+  const ExternalTool& tool;
   const Joints& joints;          // target, deg
   const Joints& joint_velocity;  // target, deg/s
   std::uint64_t cycle;           // the noise of one cycle is the same in all slots

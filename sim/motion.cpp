@@ -22,7 +22,10 @@ bool is_joint_move(std::uint32_t id) noexcept {
 
 bool is_move(std::uint32_t id) noexcept;
 
-bool takes_no_time(std::uint32_t id) noexcept { return !is_move(id) && !is_velocity(id) && id != image::kDelay; }
+bool takes_no_time(std::uint32_t id) noexcept {
+  // A tool's command is quick for the queue, but not for what its fingers hold.
+  return !is_move(id) && !is_velocity(id) && id != image::kDelay && !ExternalTool::takes(id);
+}
 
 bool is_linear_move(std::uint32_t id) noexcept {
   return id == image::kMoveLin || id == image::kMoveLinRelTrf || id == image::kMoveLinRelWrf;
@@ -100,11 +103,13 @@ double Motion::blend_start() const noexcept {
 
 // Joint moves blend with joint moves and linear with linear; what stands between them may set things, not stop the arm.
 bool Motion::can_blend() const noexcept {
+  return !held_ && !clearing_ && active_count_ == 1 && active_[0].elapsed >= blend_start() - 1e-12 &&
+         successor_blends();
+}
+
+bool Motion::successor_blends() const noexcept {
+  if (settings_.blending <= 0) return false;
   const std::uint32_t now = active_[0].command.id;
-  if (held_ || clearing_ || active_count_ != 1 || settings_.blending <= 0 ||
-      active_[0].elapsed < blend_start() - 1e-12) {
-    return false;
-  }
   constexpr std::size_t kLookAhead = 16;
   for (std::size_t i = 0; i < std::min(queue_.size(), kLookAhead); ++i) {
     const std::uint32_t next = queue_.at(i).id;
@@ -115,11 +120,24 @@ bool Motion::can_blend() const noexcept {
   return false;
 }
 
+bool Motion::tool_is_next() const noexcept { return !queue_.empty() && ExternalTool::takes(queue_.front().id); }
+
+// Path time of the older segment from which a tool's command runs beside it: where it blends with its successor, else
+// where it slows down (spec 6.3). inferred: gripper settings too, so that they act before the command behind them.
+double Motion::tool_start() const noexcept {
+  const Segment& s = active_[0].segment;
+  return successor_blends() ? blend_start() : s.duration() - s.ramp();
+}
+
+bool Motion::can_run_tool() const noexcept {
+  return !held_ && !clearing_ && active_count_ == 1 && tool_is_next() && active_[0].elapsed >= tool_start() - 1e-12;
+}
+
 // Seconds of path time until the older segment ends, or until a successor may begin.
 double Motion::until_event() const noexcept {
   const Active& a = active_[0];
-  const double blend = blend_start() - a.elapsed;
-  return active_count_ == 1 && blend > 1e-12 ? blend : a.segment.duration() - a.elapsed;
+  const double start = (tool_is_next() ? tool_start() : blend_start()) - a.elapsed;
+  return active_count_ == 1 && start > 1e-12 ? start : a.segment.duration() - a.elapsed;
 }
 
 void Motion::elapse(Time now, double seconds, const JointLimits& limits) noexcept {
@@ -168,6 +186,11 @@ std::uint16_t Motion::start_next(Time now, const JointLimits& limits, bool recov
     velocity_.command(command);
   } else if (command.id == image::kSetCheckpoint) {
     checkpoint_reached_ = static_cast<std::uint16_t>(command.arguments[0]);
+  } else if (ExternalTool::takes(command.id)) {
+    if (const auto code = tool_.run(command); code != error::kNone) {
+      journal_.add({now, command, Outcome::kRefused, code});
+      return code;
+    }
   } else if (apply(command, from, settings_)) {
     ++settings_version_;
   } else {
@@ -199,9 +222,10 @@ std::uint16_t Motion::advance(Time now, Time dt, const JointLimits& limits, bool
     clearing_ = done_logged_ = false;
   }
   for (int budget = kCommandsPerStep; budget > 0 && !velocity_.active();) {
-    // inferred: a move that reaches its end while the arm slows down for a pause takes along what needs no time behind it.
+    // inferred: a move that reaches its end while the arm slows down for a pause takes along what needs no time behind
+    // it.
     const bool ready = !queue_.empty() && (!held_ || (slowing && takes_no_time(queue_.front().id)));
-    const bool may_start = active_count_ == 0 ? ready : can_blend();
+    const bool may_start = active_count_ == 0 ? ready : can_blend() || can_run_tool();
     if (may_start) {
       --budget;
       if (const auto code = start_next(now, limits, recovery_mode); code != error::kNone) return code;

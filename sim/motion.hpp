@@ -9,13 +9,15 @@
 #include "sim/motion_queue.hpp"
 #include "sim/planner.hpp"
 #include "sim/settings.hpp"
+#include "sim/tool.hpp"
 #include "sim/velocity_mode.hpp"
 
 namespace meca::sim {
 
 class Motion {
  public:
-  Motion(const Settings& defaults, Journal& journal) : defaults_(defaults), settings_(defaults), journal_(journal) {}
+  Motion(const Settings& defaults, Journal& journal, ExternalTool& tool)
+      : defaults_(defaults), settings_(defaults), journal_(journal), tool_(tool) {}
 
   // Queue full: false, and nothing happened.
   bool enqueue(const Command& command) noexcept { return queue_.push(command); }
@@ -58,6 +60,7 @@ class Motion {
   Settings settings_;
   std::uint32_t settings_version_ = 0;
   Journal& journal_;
+  ExternalTool& tool_;
   MotionQueue queue_;
   VelocityMode velocity_;
   std::array<Active, 2> active_;  // [0] is the older one
@@ -75,6 +78,10 @@ class Motion {
   double pace(double seconds) noexcept;
   double blend_start() const noexcept;
   bool can_blend() const noexcept;
+  bool successor_blends() const noexcept;
+  bool tool_is_next() const noexcept;
+  double tool_start() const noexcept;
+  bool can_run_tool() const noexcept;
   double until_event() const noexcept;
   void elapse(Time now, double seconds, const JointLimits& limits) noexcept;
   void discard(Time now, const Command& command) noexcept;

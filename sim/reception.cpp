@@ -17,16 +17,9 @@ bool arguments_are_good(const Command& c, const image::MotionCommandInfo& info, 
 }
 
 // Equipment and features that this robot does not have.
-std::uint16_t missing(std::uint32_t id) noexcept {
+std::uint16_t missing(std::uint32_t id, const ExternalTool& tool) noexcept {
+  if (const auto code = tool.missing(id); code != error::kNone) return code;
   switch (id) {
-    case image::kGripper:
-    case image::kSetGripperVel:
-    case image::kSetGripperForce:
-    case image::kSetGripperRange:
-    case image::kMoveGripper:
-      return error::kNoGripper;
-    case image::kSetValveState:
-      return error::kNoPneumaticModule;
     case image::kStartProgram:
       return error::kProgramNotFound;
     case image::kSetTorqueLimits:
@@ -56,7 +49,7 @@ Verdict examine(const Command& command, bool use_variables, const Readiness& r) 
     return {error::kGetVariable};  // no variable exists in the model yet
   }
   if (!arguments_are_good(command, *info, r.product)) return {error::kArguments};
-  if (const auto code = missing(command.id); code != error::kNone) return {code};
+  if (const auto code = missing(command.id, r.tool); code != error::kNone) return {code};
 
   using enum image::CommandClass;
   switch (info->command_class) {

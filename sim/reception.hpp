@@ -5,6 +5,7 @@
 
 #include "sim/journal.hpp"
 #include "sim/robot.hpp"
+#include "sim/tool.hpp"
 #include "transports/image/motion_commands.hpp"
 
 namespace meca::sim {
@@ -13,6 +14,7 @@ struct Readiness {
   Product product;
   image::Layout layout;
   bool off, activated, homed, recovery_mode;
+  const ExternalTool& tool;
 };
 
 struct Verdict {

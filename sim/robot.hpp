@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "sim/equipment.hpp"
 #include "sim/journal.hpp"
 #include "transports/image/image.hpp"
 
@@ -29,6 +30,7 @@ struct RobotOptions {
   bool noise = true;  // plausible noise on actual values (seeded)
   std::uint64_t seed = 1;
   StopSeverity p_stop2_severity = StopSeverity::kClear;  // inferred: the default of the vendor's Python call
+  ToolType tool = ToolType::kNone;                       // on the flange
   std::size_t journal_capacity = 4096;                   // commands the journal remembers
 };
 
@@ -55,6 +57,9 @@ class Robot {
   void drop_connection() noexcept;  // the "connection dropped" safety stop
   void restore_connection() noexcept;
   void raise_error(std::uint16_t code) noexcept;
+  // Puts a part of this width between the gripper's fingers, which close on it; 0 takes it away. False: no gripper, or
+  // its fingers are not open wider than that.
+  bool place_part(double width_mm) noexcept;
   void set_monitoring(bool monitoring) noexcept;  // this connection may only watch: outputs are ignored
 
   // The referees: every command and what became of it, and every rule the host broke.

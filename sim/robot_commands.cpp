@@ -17,9 +17,12 @@ void Robot::State::press_e_stop() noexcept {
   safety.press_e_stop();
   power.cut();
   motion.halt(now);
+  tool.relax();
   cleared = true;
   // inferred: an R3 loses all power with its E-Stop, and with it the homing.
-  if (options.product == Product::kMeca500R3) power.forget_homing();
+  if (options.product != Product::kMeca500R3) return;
+  power.forget_homing();
+  tool.cut();
 }
 
 void Robot::State::take(const image::Outputs& next) noexcept {
@@ -45,6 +48,7 @@ void Robot::State::take_robot_control(const image::RobotControl& c) noexcept {
     if (!power.off() && power.state() != Power::State::kDeactivating) {
       power.deactivate();
       motion.halt(now);
+      tool.relax();
       cleared = true;
     }
   } else if (c.activate && power.off() && safety.motors_allowed() && error == error::kNone) {
@@ -114,7 +118,7 @@ void Robot::State::receive(const Command& command, bool use_variables, bool cycl
   if (error != error::kNone) return refuse(command, error::kAlreadyInError, cyclic);
   const Verdict verdict =
       examine(command, use_variables,
-              {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode});
+              {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode, tool});
   if (verdict.code != error::kNone) {
     refuse(command, verdict.code, cyclic);
     return fail(verdict.code);
@@ -142,6 +146,7 @@ void Robot::State::execute_now(const Command& command) noexcept {
     slots.changed(54);
   } else if (command.id == image::kClearHoming) {
     power.forget_homing();
+    tool.forget_homing();
   }
   journal.add({now, command, Outcome::kExecuted, 0});
 }

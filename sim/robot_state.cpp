@@ -22,7 +22,8 @@ constexpr Time kBoot = std::chrono::seconds(100);
 Robot::State::State(const RobotOptions& o)
     : options(o),
       journal(o.journal_capacity),
-      motion(defaults(o), journal),
+      tool(o.tool),
+      motion(defaults(o), journal, tool),
       power({o.activation_time, o.homing_time, o.deactivation_time}),
       safety(o.product, o.p_stop2_severity),
       slots(o.layout) {
@@ -35,9 +36,11 @@ void Robot::State::advance(Time dt) noexcept {
   ++cycle;
   if (power.advance(dt)) {
     motion.restore_defaults();
+    tool.restore_defaults();
     for (const std::uint32_t type : {20u, 21u, 22u, 25u, 29u, 31u, 54u}) slots.changed(type);
     paused = false;
   }
+  if (power.homed()) tool.home();
   if (safety.stops_motion()) paused = true;
 
   const Joints before = motion.joints();
@@ -49,8 +52,17 @@ void Robot::State::advance(Time dt) noexcept {
   }
   const double seconds = std::chrono::duration<double>(dt).count();
   for (std::size_t i = 0; i < 6; ++i) joint_velocity[i] = (motion.joints()[i] - before[i]) / seconds;
+  advance_tool(seconds);
   if (motion.moving()) slots.measured_changed();
   report();
+}
+
+void Robot::State::advance_tool(double seconds) noexcept {
+  tool.advance(seconds);
+  if (tool.take_settings_changed()) slots.changed(23);
+  if (tool.take_state_changed()) {
+    for (const std::uint32_t type : {52u, 53u}) slots.changed(type);
+  }
 }
 
 void Robot::State::report() noexcept {
@@ -113,7 +125,7 @@ void Robot::State::report_pose() noexcept {
 
 void Robot::State::report_dynamic_data() noexcept {
   const auto types = slots.advance(outputs.dynamic_data_configuration.type_ids);
-  const DynamicSource source{options, motion.settings(), limits, motion.joints(), joint_velocity, cycle};
+  const DynamicSource source{options, motion.settings(), limits, tool, motion.joints(), joint_velocity, cycle};
   for (std::size_t i = 0; i < image::kDynamicSlots; ++i) {
     inputs.dynamic_data[i] = {types[i], dynamic_values(types[i], source)};
   }

@@ -9,6 +9,7 @@
 #include "sim/reception.hpp"
 #include "sim/robot.hpp"
 #include "sim/safety.hpp"
+#include "sim/tool.hpp"
 #include "sim/user_limits.hpp"
 
 namespace meca::sim {
@@ -28,6 +29,7 @@ struct Robot::State {
   std::uint64_t cycle = 0;
   Journal journal;
   Log<Violation> violations{64};
+  ExternalTool tool;
   Motion motion;
   Power power;
   Safety safety;
@@ -56,6 +58,7 @@ struct Robot::State {
   void check_levels(const image::Outputs& next) noexcept;
   void violation(std::string_view what) noexcept { violations.add({now, what}); }
 
+  void advance_tool(double seconds) noexcept;
   void report() noexcept;
   void report_pose() noexcept;
   void report_dynamic_data() noexcept;

@@ -28,10 +28,9 @@ struct Settings {
   double time_scaling = 100;                                          // %
   std::array<double, 6> torque_limits{100, 100, 100, 100, 100, 100};  // %
   int torque_severity = 0, torque_mode = 0;
-  double gripper_force = 40, gripper_velocity = 40;  // %; no gripper is fitted
-  int move_mode = 0, move_duration_severity = 1;     // velocity based; warning
-  double move_duration = 3;                          // s
-  std::array<double, 4> payload{};                   // kg, mm, mm, mm
+  int move_mode = 0, move_duration_severity = 1;  // velocity based; warning
+  double move_duration = 3;                       // s
+  std::array<double, 4> payload{};                // kg, mm, mm, mm
 };
 
 // Applies a Set* command whose arguments are known to be good. `now` is where the arm is when its turn comes.
