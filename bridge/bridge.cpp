@@ -37,6 +37,7 @@ sim::RobotOptions model_of(const RobotConfig& robot) {
   options.serial_number = config.serial_number;
   options.noise = config.noise;
   options.tool = tool_of(config.tool);
+  options.variables = sim::example_variables();
   options.seed = config.serial_number;
   // One millisecond, not none: what takes no time at all shows no Busy, and clients wait for its end.
   if (config.instant_homing) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "transports/image/motion_commands.hpp"
+
 namespace meca::sim {
 namespace {
 
@@ -164,6 +166,8 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
 }  // namespace
 
 std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) noexcept {
+  const bool variable = type >= image::kFirstVariable && s.options.layout == image::Layout::kFirmware11;
+  if (variable) return s.variables.values(type);
   switch (type) {
     case 32:
       return floats(s.joint_velocity);

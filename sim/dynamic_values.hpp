@@ -8,6 +8,7 @@
 #include "sim/settings.hpp"
 #include "sim/tool.hpp"
 #include "sim/user_limits.hpp"
+#include "sim/variables.hpp"
 
 namespace meca::sim {
 
@@ -16,6 +17,7 @@ struct DynamicSource {
   const RobotOptions& options;
   const Settings& settings;
   const UserLimits& limits;
+  const Variables& variables;
   const ExternalTool& tool;
   const Joints& joints;          // target, deg
   const Joints& joint_velocity;  // target, deg/s
@@ -23,7 +25,7 @@ struct DynamicSource {
 };
 
 // Types that no Meca500 has, or that no document names, give zeros (inferred: the manual only says what the known ones
-// hold). Variables (10000..19999) do not exist in the model yet: zeros.
+// hold).
 std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& source) noexcept;
 
 }  // namespace meca::sim

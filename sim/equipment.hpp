@@ -1,7 +1,10 @@
-// What a simulated robot is fitted and loaded with beside its arm: the tool on its flange.
+// What a simulated robot is fitted and loaded with beside its arm: the tool on its flange, variables and programs.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace meca::sim {
 
@@ -12,5 +15,16 @@ enum class ToolType : std::uint8_t {
   kMegp25ls = 11,  // the same with a long stroke
   kMpm500 = 20,    // pneumatic module: two valves
 };
+
+// A variable as a user creates it over TCP/IP (CreateVariable), for use over a cyclic protocol; firmware 11 (spec 5.8).
+struct Variable {
+  std::uint32_t cyclic_id = 0;    // 10000..19999
+  std::size_t size = 1;           // 1: a number; up to 6: an array
+  std::array<float, 6> values{};  // initial; the first `size` count
+};
+
+// What the built-in robot has: 10000, the number 50 (a speed in percent); 10001, the number 0; 10010, the six numbers
+// 0 (a joint set).
+std::vector<Variable> example_variables();
 
 }  // namespace meca::sim

@@ -14,8 +14,8 @@ using Time = std::chrono::nanoseconds;
 
 struct Command {
   std::uint32_t id = 0;
-  std::uint16_t move_id = 0;  // 0: cyclic mode
-  std::array<float, 6> arguments{};
+  std::uint16_t move_id = 0;         // 0: cyclic mode
+  std::array<float, 6> arguments{};  // values, also where the host sent the numbers of variables
   friend bool operator==(const Command&, const Command&) = default;
 };
 

@@ -16,9 +16,11 @@ bool arguments_are_good(const Command& c, const image::MotionCommandInfo& info, 
   return true;
 }
 
+bool is_variable(std::uint32_t id) noexcept { return id >= image::kFirstVariable && id <= image::kLastVariable; }
+
 // Equipment and features that this robot does not have.
-std::uint16_t missing(std::uint32_t id, const ExternalTool& tool) noexcept {
-  if (const auto code = tool.missing(id); code != error::kNone) return code;
+std::uint16_t missing(std::uint32_t id, const Readiness& r) noexcept {
+  if (const auto code = r.tool.missing(id); code != error::kNone) return code;
   switch (id) {
     case image::kStartProgram:
       return error::kProgramNotFound;
@@ -34,22 +36,31 @@ std::uint16_t missing(std::uint32_t id, const ExternalTool& tool) noexcept {
     default:
       break;  // an id from the wire, not an enumeration
   }
-  return id >= image::kFirstVariable && id <= image::kLastVariable ? error::kSetVariable : error::kNone;
+  return is_variable(id) && r.variables.find(id) == nullptr ? error::kSetVariable : error::kNone;
+}
+
+// How many arguments are numbers of variables when UseVariables is set.
+std::size_t variable_arguments(std::uint32_t id, const image::MotionCommandInfo& info, const Variables& all) noexcept {
+  if (!is_variable(id)) return info.minimum_arguments;
+  const Variable* target = all.find(id);
+  return target != nullptr ? target->size : 0;
 }
 
 }  // namespace
 
-Verdict examine(const Command& command, bool use_variables, const Readiness& r) noexcept {
+Verdict examine(const Command& received, bool use_variables, const Readiness& r) noexcept {
+  Command command = received;
   const image::MotionCommandInfo* info = image::find_motion_command(command.id);
   // Not published what a robot answers to commands of other robots; inferred: it does not know them.
   if (info == nullptr || info->since > r.layout || info->command_class == image::CommandClass::kOtherRobots) {
     return {error::kUnknownCommand};
   }
-  if (use_variables && r.layout == image::Layout::kFirmware11 && info->minimum_arguments > 0) {
-    return {error::kGetVariable};  // no variable exists in the model yet
+  if (use_variables && r.layout == image::Layout::kFirmware11) {
+    const std::size_t count = variable_arguments(command.id, *info, r.variables);
+    if (const auto code = r.variables.resolve(command, count); code != error::kNone) return {code};
   }
   if (!arguments_are_good(command, *info, r.product)) return {error::kArguments};
-  if (const auto code = missing(command.id, r.tool); code != error::kNone) return {code};
+  if (const auto code = missing(command.id, r); code != error::kNone) return {code};
 
   using enum image::CommandClass;
   switch (info->command_class) {
@@ -69,7 +80,7 @@ Verdict examine(const Command& command, bool use_variables, const Readiness& r) 
       if (!r.homed && !r.recovery_mode) return {error::kNotHomed};
       break;
   }
-  return {error::kNone, info};
+  return {error::kNone, info, command};
 }
 
 }  // namespace meca::sim

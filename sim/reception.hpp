@@ -6,6 +6,7 @@
 #include "sim/journal.hpp"
 #include "sim/robot.hpp"
 #include "sim/tool.hpp"
+#include "sim/variables.hpp"
 #include "transports/image/motion_commands.hpp"
 
 namespace meca::sim {
@@ -15,13 +16,16 @@ struct Readiness {
   image::Layout layout;
   bool off, activated, homed, recovery_mode;
   const ExternalTool& tool;
+  const Variables& variables;
 };
 
 struct Verdict {
   std::uint16_t code = 0;                          // 0: take it
   const image::MotionCommandInfo* info = nullptr;  // of a command that is taken
+  Command command = {};                            // as it is carried out: values in place of variables
 };
 
+// inferred: UseVariables takes the values that the variables have on reception; ranges hold for the values.
 // What the model does not do yet is refused too, with the code a robot without that equipment gives; see sim/README.md.
 Verdict examine(const Command& command, bool use_variables, const Readiness& readiness) noexcept;
 

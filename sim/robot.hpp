@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "sim/equipment.hpp"
 #include "sim/journal.hpp"
@@ -31,11 +32,13 @@ struct RobotOptions {
   std::uint64_t seed = 1;
   StopSeverity p_stop2_severity = StopSeverity::kClear;  // inferred: the default of the vendor's Python call
   ToolType tool = ToolType::kNone;                       // on the flange
+  std::vector<Variable> variables;                       // created over TCP/IP before; kept by the robot
   std::size_t journal_capacity = 4096;                   // commands the journal remembers
 };
 
 class Robot {
  public:
+  // Throws std::invalid_argument with a sentence for a variable that no robot can have.
   explicit Robot(const RobotOptions& options = {});
   ~Robot();
   Robot(Robot&&) noexcept;

@@ -113,16 +113,17 @@ void Robot::State::refuse(const Command& command, std::uint16_t code, bool cycli
   journal.add({now, command, Outcome::kRefused, code});
 }
 
-void Robot::State::receive(const Command& command, bool use_variables, bool cyclic) noexcept {
+void Robot::State::receive(const Command& received, bool use_variables, bool cyclic) noexcept {
   // The error shown stays the first one (inferred); the journal has the 1011.
-  if (error != error::kNone) return refuse(command, error::kAlreadyInError, cyclic);
-  const Verdict verdict =
-      examine(command, use_variables,
-              {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode, tool});
+  if (error != error::kNone) return refuse(received, error::kAlreadyInError, cyclic);
+  const Verdict verdict = examine(
+      received, use_variables,
+      {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode, tool, variables});
   if (verdict.code != error::kNone) {
-    refuse(command, verdict.code, cyclic);
+    refuse(received, verdict.code, cyclic);
     return fail(verdict.code);
   }
+  const Command& command = verdict.command;
   using enum image::CommandClass;
   const image::CommandClass kind = verdict.info->command_class;
   if (kind == kImmediate) return execute_now(command);
@@ -147,6 +148,11 @@ void Robot::State::execute_now(const Command& command) noexcept {
   } else if (command.id == image::kClearHoming) {
     power.forget_homing();
     tool.forget_homing();
+  } else if (variables.find(command.id) != nullptr) {
+    if (const auto code = variables.set(command); code != error::kNone) {
+      refuse(command, code, false);
+      return fail(code);
+    }
   }
   journal.add({now, command, Outcome::kExecuted, 0});
 }

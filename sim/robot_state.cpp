@@ -26,6 +26,7 @@ Robot::State::State(const RobotOptions& o)
       motion(defaults(o), journal, tool),
       power({o.activation_time, o.homing_time, o.deactivation_time}),
       safety(o.product, o.p_stop2_severity),
+      variables(o.variables),
       slots(o.layout) {
   report();
 }
@@ -125,7 +126,8 @@ void Robot::State::report_pose() noexcept {
 
 void Robot::State::report_dynamic_data() noexcept {
   const auto types = slots.advance(outputs.dynamic_data_configuration.type_ids);
-  const DynamicSource source{options, motion.settings(), limits, tool, motion.joints(), joint_velocity, cycle};
+  const DynamicSource source{options, motion.settings(), limits,         variables,
+                             tool,    motion.joints(),   joint_velocity, cycle};
   for (std::size_t i = 0; i < image::kDynamicSlots; ++i) {
     inputs.dynamic_data[i] = {types[i], dynamic_values(types[i], source)};
   }

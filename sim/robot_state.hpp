@@ -11,6 +11,7 @@
 #include "sim/safety.hpp"
 #include "sim/tool.hpp"
 #include "sim/user_limits.hpp"
+#include "sim/variables.hpp"
 
 namespace meca::sim {
 
@@ -34,6 +35,7 @@ struct Robot::State {
   Power power;
   Safety safety;
   UserLimits limits;
+  Variables variables;
   DynamicSlots slots;
   std::uint16_t error = 0;
   bool monitoring = false, sim_mode = false, recovery_mode = false;

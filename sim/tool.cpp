@@ -10,7 +10,7 @@
 namespace meca::sim {
 namespace {
 
-constexpr double kTopSpeed = 50;   // mm/s at SetGripperVel 100 (manual: about)
+constexpr double kTopSpeed = 50;     // mm/s at SetGripperVel 100 (manual: about)
 constexpr double kTolerance = 0.01;  // mm; inferred: what counts as being there
 
 // inferred from public data sheets: strokes of 6 mm and 48 mm.

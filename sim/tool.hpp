@@ -51,13 +51,13 @@ class ExternalTool {
   std::array<float, 6> gripper_state() const noexcept;
 
   ToolType type_;
-  double stroke_;                     // mm
-  double force_ = 40, speed_ = 40;    // %
-  double closed_ = 0, open_;          // mm, SetGripperRange
-  double opening_ = 0, target_ = 0;   // mm, between the fingers
-  double part_ = 0;                   // mm, 0: none
+  double stroke_;                    // mm
+  double force_ = 40, speed_ = 40;   // %
+  double closed_ = 0, open_;         // mm, SetGripperRange
+  double opening_ = 0, target_ = 0;  // mm, between the fingers
+  double part_ = 0;                  // mm, 0: none
   bool homed_ = false;
-  std::array<int, 2> valves_{};       // 1 open
+  std::array<int, 2> valves_{};  // 1 open
   bool settings_changed_ = false, state_changed_ = false;
 };
 

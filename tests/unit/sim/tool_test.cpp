@@ -212,9 +212,8 @@ Times times_of(Rig& rig, std::uint32_t move, const std::vector<double>& argument
 
 TEST_F(LongGripper, StartsWhereTheMoveBeforeItSlowsDown) {
   rig.make_ready();
-  for (const auto& [move, arguments] :
-       {std::pair{image::kMoveJoints, std::vector<double>{60, 0, 0, 0, 20, 0}},
-        std::pair{image::kMoveLinRelWrf, std::vector<double>{0, 0, -40, 0, 0, 0}}}) {
+  for (const auto& [move, arguments] : {std::pair{image::kMoveJoints, std::vector<double>{60, 0, 0, 0, 20, 0}},
+                                        std::pair{image::kMoveLinRelWrf, std::vector<double>{0, 0, -40, 0, 0, 0}}}) {
     const Times t = times_of(rig, move, arguments);
     const double ramp = move == image::kMoveJoints ? 0.1 * 100 / 80 : 0.1 * 100 / 50;
     EXPECT_NEAR(t.rest - t.fingers, ramp, 0.003) << move;
@@ -265,7 +264,7 @@ TEST_F(LongGripper, DoesNotStartWhileMotionIsPaused) {
 TEST_F(LongGripper, IsExecutedInTheOrderOfTheQueue) {
   rig.make_ready();
   const auto before = rig.robot.journal().size();
-  const std::uint32_t ids[] = {image::kMoveJoints,   image::kSetGripperVel, image::kGripper,
+  const std::uint32_t ids[] = {image::kMoveJoints,    image::kSetGripperVel, image::kGripper,
                                image::kSetCheckpoint, image::kMoveJoints,    image::kMoveGripper};
   for (const std::uint32_t id : ids) {
     const double argument = id == image::kSetGripperVel ? 50 : id == image::kGripper ? 0 : 1;
