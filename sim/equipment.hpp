@@ -27,4 +27,18 @@ struct Variable {
 // 0 (a joint set).
 std::vector<Variable> example_variables();
 
+// A program as a user saves it over TCP/IP, started over a cyclic protocol by StartProgram (spec 2.1, id 100).
+struct ProgramCommand {
+  std::uint32_t id = 0;  // of a command that goes through the queue
+  std::array<float, 6> arguments{};
+};
+struct Program {
+  std::uint16_t number = 0;  // 1..65534
+  std::vector<ProgramCommand> commands;
+};
+
+// What every robot has unless told otherwise: 1 turns joint 1 to 10 degrees and all joints to 0; 2 waits for a second;
+// 3 runs 1, 2 and 1; 4 starts itself and fails (3023).
+std::vector<Program> example_programs();
+
 }  // namespace meca::sim

@@ -16,6 +16,7 @@ struct Command {
   std::uint32_t id = 0;
   std::uint16_t move_id = 0;         // 0: cyclic mode
   std::array<float, 6> arguments{};  // values, also where the host sent the numbers of variables
+  std::uint16_t program = 0;         // number of the offline program it is part of; 0: sent by the host
   friend bool operator==(const Command&, const Command&) = default;
 };
 

@@ -24,7 +24,8 @@ bool is_move(std::uint32_t id) noexcept;
 
 bool takes_no_time(std::uint32_t id) noexcept {
   // A tool's command is quick for the queue, but not for what its fingers hold.
-  return !is_move(id) && !is_velocity(id) && id != image::kDelay && !ExternalTool::takes(id);
+  return !is_move(id) && !is_velocity(id) && id != image::kDelay && id != image::kStartProgram &&
+         !ExternalTool::takes(id);
 }
 
 bool is_linear_move(std::uint32_t id) noexcept {
@@ -33,16 +34,28 @@ bool is_linear_move(std::uint32_t id) noexcept {
 
 bool is_move(std::uint32_t id) noexcept { return is_joint_move(id) || is_linear_move(id); }
 
+// inferred: a program begins from rest.
+bool stops_the_arm(std::uint32_t id) noexcept {
+  return needs_full_stop(id) || id == image::kDelay || id == image::kStartProgram || is_velocity(id);
+}
+
+// The end of a program is the outcome of the StartProgram that began it.
+Command as_sent(Command command) noexcept {
+  if (command.id == Upcoming::kProgramEnd) command.id = image::kStartProgram;
+  return command;
+}
+
 }  // namespace
 
 void Motion::repeat_velocity(Time now, const Command& command) noexcept {
-  if (active_count_ == 0 && queue_.empty()) {
+  MotionQueue& queue = next_.queue();
+  if (active_count_ == 0 && next_.empty()) {
     if (!velocity_.active()) journal_.add({now, command, Outcome::kExecuted, 0});
     velocity_.command(command);
-  } else if (!queue_.empty() && queue_.back().move_id == 0 && is_velocity(queue_.back().id)) {
-    queue_.back() = command;
+  } else if (!queue.empty() && queue.back().move_id == 0 && is_velocity(queue.back().id)) {
+    queue.back() = command;
   } else {
-    queue_.push(command);
+    queue.push(command);
   }
 }
 
@@ -61,10 +74,7 @@ void Motion::discard_active(Time now) noexcept {
 void Motion::clear(Time now) noexcept {
   discard_active(now);
   clearing_ = active_count_ > 0;
-  while (!queue_.empty()) {
-    discard(now, queue_.front());
-    queue_.pop();
-  }
+  for (; !next_.empty(); next_.pop()) discard(now, as_sent(next_.front()));
 }
 
 void Motion::halt(Time now) noexcept {
@@ -111,16 +121,17 @@ bool Motion::successor_blends() const noexcept {
   if (settings_.blending <= 0) return false;
   const std::uint32_t now = active_[0].command.id;
   constexpr std::size_t kLookAhead = 16;
-  for (std::size_t i = 0; i < std::min(queue_.size(), kLookAhead); ++i) {
-    const std::uint32_t next = queue_.at(i).id;
-    if (is_joint_move(next)) return is_joint_move(now);
-    if (is_linear_move(next)) return is_linear_move(now);
-    if (needs_full_stop(next) || next == image::kDelay || is_velocity(next)) return false;
+  for (std::size_t i = 0; i < kLookAhead; ++i) {
+    const auto next = next_.id_at(i);
+    if (!next) return false;
+    if (is_joint_move(*next)) return is_joint_move(now);
+    if (is_linear_move(*next)) return is_linear_move(now);
+    if (stops_the_arm(*next)) return false;
   }
   return false;
 }
 
-bool Motion::tool_is_next() const noexcept { return !queue_.empty() && ExternalTool::takes(queue_.front().id); }
+bool Motion::tool_is_next() const noexcept { return !next_.empty() && ExternalTool::takes(*next_.id_at(0)); }
 
 // Path time of the older segment from which a tool's command runs beside it: where it blends with its successor, else
 // where it slows down (spec 6.3). inferred: gripper settings too, so that they act before the command behind them.
@@ -173,37 +184,48 @@ std::uint16_t Motion::start_move(Time now, const Command& command, const Joints&
   return error::kNone;
 }
 
-// Takes the next command from the queue. With a move under way, that move counts as done: they blend.
+// Takes the next command. With a move under way, that move counts as done: they blend.
 std::uint16_t Motion::start_next(Time now, const JointLimits& limits, bool recovery_mode) noexcept {
-  const Command command = queue_.front();
-  queue_.pop();
+  const Command command = next_.front();
+  next_.pop();
   if (active_count_ > 0 && !done_logged_) {
     journal_.add({now, active_[0].command, Outcome::kExecuted, 0});
     done_logged_ = true;
   }
   const Joints from = active_count_ > 0 ? active_[0].segment.end() : joints_;
+  if (is_move(command.id) || command.id == image::kDelay) {
+    return start_move(now, command, from, limits, recovery_mode);
+  }
+  const std::uint16_t code = execute(command, from);
+  if (code != error::kNone) {
+    journal_.add({now, command, Outcome::kRefused, code});
+  } else if (command.id != image::kStartProgram) {  // that is executed when its program has ended
+    journal_.add({now, as_sent(command), Outcome::kExecuted, 0});
+  }
+  return code;
+}
+
+// A command that takes no time in the queue; `from` is where the arm will be.
+std::uint16_t Motion::execute(const Command& command, const Joints& from) noexcept {
+  if (command.id == Upcoming::kProgramEnd) return error::kNone;
+  if (command.id == image::kStartProgram) return next_.start(command);
+  if (ExternalTool::takes(command.id)) return tool_.run(command);
   if (is_velocity(command.id)) {
     velocity_.command(command);
   } else if (command.id == image::kSetCheckpoint) {
     checkpoint_reached_ = static_cast<std::uint16_t>(command.arguments[0]);
-  } else if (ExternalTool::takes(command.id)) {
-    if (const auto code = tool_.run(command); code != error::kNone) {
-      journal_.add({now, command, Outcome::kRefused, code});
-      return code;
-    }
   } else if (apply(command, from, settings_)) {
     ++settings_version_;
   } else {
-    return start_move(now, command, from, limits, recovery_mode);
+    return error::kCommandFailed;
   }
-  journal_.add({now, command, Outcome::kExecuted, 0});
   return error::kNone;
 }
 
 void Motion::run_velocity(Time now, double seconds, const JointLimits& limits, bool recovery_mode) noexcept {
-  if (!held_ && !queue_.empty() && is_velocity(queue_.front().id)) {
+  if (!held_ && !next_.empty() && is_velocity(*next_.id_at(0))) {
     start_next(now, limits, recovery_mode);  // goes on with the new velocity without stopping
-  } else if (held_ || !queue_.empty()) {
+  } else if (held_ || !next_.empty()) {
     velocity_.cancel();
   }
   velocity_.step(seconds, settings_, limits, recovery_mode, joints_);
@@ -224,7 +246,7 @@ std::uint16_t Motion::advance(Time now, Time dt, const JointLimits& limits, bool
   for (int budget = kCommandsPerStep; budget > 0 && !velocity_.active();) {
     // inferred: a move that reaches its end while the arm slows down for a pause takes along what needs no time behind
     // it.
-    const bool ready = !queue_.empty() && (!held_ || (slowing && takes_no_time(queue_.front().id)));
+    const bool ready = !next_.empty() && (!held_ || (slowing && takes_no_time(*next_.id_at(0))));
     const bool may_start = active_count_ == 0 ? ready : can_blend() || can_run_tool();
     if (may_start) {
       --budget;

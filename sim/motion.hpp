@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "sim/journal.hpp"
-#include "sim/motion_queue.hpp"
 #include "sim/planner.hpp"
+#include "sim/programs.hpp"
 #include "sim/settings.hpp"
 #include "sim/tool.hpp"
 #include "sim/velocity_mode.hpp"
@@ -16,11 +16,11 @@ namespace meca::sim {
 
 class Motion {
  public:
-  Motion(const Settings& defaults, Journal& journal, ExternalTool& tool)
-      : defaults_(defaults), settings_(defaults), journal_(journal), tool_(tool) {}
+  Motion(const Settings& defaults, Journal& journal, ExternalTool& tool, const Programs& programs)
+      : defaults_(defaults), settings_(defaults), journal_(journal), tool_(tool), next_(programs) {}
 
   // Queue full: false, and nothing happened.
-  bool enqueue(const Command& command) noexcept { return queue_.push(command); }
+  bool enqueue(const Command& command) noexcept { return next_.queue().push(command); }
   // Cyclic mode: a velocity command that repeats every cycle. Behind queued commands it waits, but only once.
   void repeat_velocity(Time now, const Command& command) noexcept;
 
@@ -42,9 +42,10 @@ class Motion {
   const Settings& settings() const noexcept { return settings_; }
   Settings& settings() noexcept { return settings_; }
   std::uint32_t settings_version() const noexcept { return settings_version_; }
-  std::size_t fifo_space() const noexcept { return queue_.space(); }
+  std::size_t fifo_space() const noexcept { return next_.queue().space(); }
+  std::uint16_t running_program() const noexcept { return next_.running(); }  // 0 none
   bool moving() const noexcept;
-  bool nothing_to_do() const noexcept { return active_count_ == 0 && queue_.empty() && !velocity_.active(); }
+  bool nothing_to_do() const noexcept { return active_count_ == 0 && next_.empty() && !velocity_.active(); }
   bool clearing() const noexcept { return clearing_; }
   std::uint16_t checkpoint_reached() const noexcept { return checkpoint_reached_; }
   std::uint16_t checkpoint_discarded() const noexcept { return checkpoint_discarded_; }
@@ -61,7 +62,7 @@ class Motion {
   std::uint32_t settings_version_ = 0;
   Journal& journal_;
   ExternalTool& tool_;
-  MotionQueue queue_;
+  Upcoming next_;
   VelocityMode velocity_;
   std::array<Active, 2> active_;  // [0] is the older one
   std::size_t active_count_ = 0;
@@ -75,6 +76,7 @@ class Motion {
   std::uint16_t start_move(Time now, const Command& command, const Joints& from, const JointLimits& limits,
                            bool recovery_mode) noexcept;
   void run_velocity(Time now, double seconds, const JointLimits& limits, bool recovery_mode) noexcept;
+  std::uint16_t execute(const Command& command, const Joints& from) noexcept;
   double pace(double seconds) noexcept;
   double blend_start() const noexcept;
   bool can_blend() const noexcept;

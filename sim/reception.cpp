@@ -5,6 +5,14 @@
 namespace meca::sim {
 namespace {
 
+// Not published what a robot answers to commands of other robots; inferred: it does not know them.
+const image::MotionCommandInfo* known_command(std::uint32_t id, image::Layout layout) noexcept {
+  const image::MotionCommandInfo* info = image::find_motion_command(id);
+  const bool known =
+      info != nullptr && info->since <= layout && info->command_class != image::CommandClass::kOtherRobots;
+  return known ? info : nullptr;
+}
+
 bool arguments_are_good(const Command& c, const image::MotionCommandInfo& info, Product product) noexcept {
   for (std::size_t i = 0; i < info.minimum_arguments; ++i) {
     image::Argument rule = info.arguments[i];
@@ -19,11 +27,12 @@ bool arguments_are_good(const Command& c, const image::MotionCommandInfo& info, 
 bool is_variable(std::uint32_t id) noexcept { return id >= image::kFirstVariable && id <= image::kLastVariable; }
 
 // Equipment and features that this robot does not have.
-std::uint16_t missing(std::uint32_t id, const Readiness& r) noexcept {
+std::uint16_t missing(const Command& command, const Readiness& r) noexcept {
+  const std::uint32_t id = command.id;
   if (const auto code = r.tool.missing(id); code != error::kNone) return code;
   switch (id) {
     case image::kStartProgram:
-      return error::kProgramNotFound;
+      return r.programs.check(command.arguments[0]);
     case image::kSetTorqueLimits:
     case image::kSetTorqueLimitsCfg:
     case image::kSetWorkZoneCfg:
@@ -50,17 +59,14 @@ std::size_t variable_arguments(std::uint32_t id, const image::MotionCommandInfo&
 
 Verdict examine(const Command& received, bool use_variables, const Readiness& r) noexcept {
   Command command = received;
-  const image::MotionCommandInfo* info = image::find_motion_command(command.id);
-  // Not published what a robot answers to commands of other robots; inferred: it does not know them.
-  if (info == nullptr || info->since > r.layout || info->command_class == image::CommandClass::kOtherRobots) {
-    return {error::kUnknownCommand};
-  }
+  const image::MotionCommandInfo* info = known_command(command.id, r.layout);
+  if (info == nullptr) return {error::kUnknownCommand};
   if (use_variables && r.layout == image::Layout::kFirmware11) {
     const std::size_t count = variable_arguments(command.id, *info, r.variables);
     if (const auto code = r.variables.resolve(command, count); code != error::kNone) return {code};
   }
   if (!arguments_are_good(command, *info, r.product)) return {error::kArguments};
-  if (const auto code = missing(command.id, r); code != error::kNone) return {code};
+  if (const auto code = missing(command, r); code != error::kNone) return {code};
 
   using enum image::CommandClass;
   switch (info->command_class) {
@@ -81,6 +87,13 @@ Verdict examine(const Command& received, bool use_variables, const Readiness& r)
       break;
   }
   return {error::kNone, info, command};
+}
+
+bool belongs_in_program(const Command& command, Product product, image::Layout layout) noexcept {
+  using enum image::CommandClass;
+  const image::MotionCommandInfo* info = known_command(command.id, layout);
+  return info != nullptr && info->command_class != kImmediate && info->command_class != kConfiguration &&
+         arguments_are_good(command, *info, product);
 }
 
 }  // namespace meca::sim

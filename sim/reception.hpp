@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "sim/journal.hpp"
+#include "sim/programs.hpp"
 #include "sim/robot.hpp"
 #include "sim/tool.hpp"
 #include "sim/variables.hpp"
@@ -17,6 +18,7 @@ struct Readiness {
   bool off, activated, homed, recovery_mode;
   const ExternalTool& tool;
   const Variables& variables;
+  const Programs& programs;
 };
 
 struct Verdict {
@@ -28,5 +30,9 @@ struct Verdict {
 // inferred: UseVariables takes the values that the variables have on reception; ranges hold for the values.
 // What the model does not do yet is refused too, with the code a robot without that equipment gives; see sim/README.md.
 Verdict examine(const Command& command, bool use_variables, const Readiness& readiness) noexcept;
+
+// Whether a saved program may hold it: a known command of this firmware that goes through the queue, with good
+// arguments.
+bool belongs_in_program(const Command& command, Product product, image::Layout layout) noexcept;
 
 }  // namespace meca::sim

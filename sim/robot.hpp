@@ -32,13 +32,14 @@ struct RobotOptions {
   std::uint64_t seed = 1;
   StopSeverity p_stop2_severity = StopSeverity::kClear;  // inferred: the default of the vendor's Python call
   ToolType tool = ToolType::kNone;                       // on the flange
+  std::vector<Program> programs = example_programs();    // saved over TCP/IP before; kept by the robot
   std::vector<Variable> variables;                       // created over TCP/IP before; kept by the robot
   std::size_t journal_capacity = 4096;                   // commands the journal remembers
 };
 
 class Robot {
  public:
-  // Throws std::invalid_argument with a sentence for a variable that no robot can have.
+  // Throws std::invalid_argument with a sentence for a variable or a program number that no robot can have.
   explicit Robot(const RobotOptions& options = {});
   ~Robot();
   Robot(Robot&&) noexcept;

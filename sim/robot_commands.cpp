@@ -116,9 +116,9 @@ void Robot::State::refuse(const Command& command, std::uint16_t code, bool cycli
 void Robot::State::receive(const Command& received, bool use_variables, bool cyclic) noexcept {
   // The error shown stays the first one (inferred); the journal has the 1011.
   if (error != error::kNone) return refuse(received, error::kAlreadyInError, cyclic);
-  const Verdict verdict = examine(
-      received, use_variables,
-      {options.product, options.layout, power.off(), power.activated(), power.homed(), recovery_mode, tool, variables});
+  const Verdict verdict = examine(received, use_variables,
+                                  {options.product, options.layout, power.off(), power.activated(), power.homed(),
+                                   recovery_mode, tool, variables, programs});
   if (verdict.code != error::kNone) {
     refuse(received, verdict.code, cyclic);
     return fail(verdict.code);

@@ -23,7 +23,8 @@ Robot::State::State(const RobotOptions& o)
     : options(o),
       journal(o.journal_capacity),
       tool(o.tool),
-      motion(defaults(o), journal, tool),
+      programs(o.programs, o.product, o.layout),
+      motion(defaults(o), journal, tool, programs),
       power({o.activation_time, o.homing_time, o.deactivation_time}),
       safety(o.product, o.p_stop2_severity),
       variables(o.variables),
@@ -83,6 +84,7 @@ void Robot::State::report() noexcept {
   m.checkpoint_discarded = options.layout == image::Layout::kFirmware11 ? motion.checkpoint_discarded() : 0;
   m.move_id = move_id;
   m.fifo_space = static_cast<std::uint16_t>(motion.fifo_space());
+  m.offline_program_id = motion.running_program();
   m.paused = paused && power.activated();
   m.eom = !moving;
   m.eob = !moving && motion.nothing_to_do();

@@ -6,6 +6,7 @@
 #include "sim/dynamic_values.hpp"
 #include "sim/motion.hpp"
 #include "sim/power.hpp"
+#include "sim/programs.hpp"
 #include "sim/reception.hpp"
 #include "sim/robot.hpp"
 #include "sim/safety.hpp"
@@ -31,6 +32,7 @@ struct Robot::State {
   Journal journal;
   Log<Violation> violations{64};
   ExternalTool tool;
+  Programs programs;
   Motion motion;
   Power power;
   Safety safety;

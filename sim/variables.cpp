@@ -54,8 +54,8 @@ std::uint16_t Variables::set(const Command& command) noexcept {
 std::uint16_t Variables::resolve(Command& command, std::size_t count) const noexcept {
   for (float& argument : std::span(command.arguments).first(count)) {
     // NaN and infinity are numbers of no variable either.
-    const bool whole = argument >= image::kFirstVariable && argument <= image::kLastVariable &&
-                       argument == std::trunc(argument);
+    const bool whole =
+        argument >= image::kFirstVariable && argument <= image::kLastVariable && argument == std::trunc(argument);
     const Variable* variable = whole ? find(static_cast<std::uint32_t>(argument)) : nullptr;
     if (variable == nullptr) return error::kGetVariable;
     argument = variable->values[0];

@@ -36,7 +36,10 @@ TEST(Allocation, IsCountedByThisProgram) {
 }
 
 TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
-  Rig rig(RobotOptions{});
+  RobotOptions options;
+  options.tool = ToolType::kMegp25ls;
+  options.variables = example_variables();
+  Rig rig(options);
   std::uint64_t while_stepping = 0;
   const auto steps = [&](int count) {
     const auto before = allocations.load();
@@ -56,6 +59,13 @@ TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
   command(image::kMoveLinRelWrf, {-10, 5, 5, 3, 2, 1});
   command(image::kMovePose, {150, 50, 250, 0, 90, 0});
   command(image::kMoveLinVelTrf, {1, 2, 3, 0, 0, 0});
+  command(image::kGripper, {0});
+  command(image::kStartProgram, {3});
+  command(10010, {0, 0, 0, 0, 30, 0});
+  rig.out.motion_control.use_variables = true;
+  command(image::kSetJointVel, {10000});
+  rig.out.motion_control.use_variables = false;
+  EXPECT_EQ(rig.robot.inputs().robot_status.error_code, 0);
   command(image::kMoveLin, {900, 0, 0, 0, 0, 0});  // out of reach
   EXPECT_NE(rig.robot.inputs().robot_status.error_code, 0);
   rig.out.robot_control.reset_error = true;

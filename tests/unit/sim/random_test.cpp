@@ -25,6 +25,7 @@ class WildHost {
     o.motion_control.use_variables = chance(0.001);
     o.motion_command.command_id = chance(0.01) ? static_cast<std::uint32_t>(random_()) : random_() % 61;
     for (float& a : o.motion_command.arguments) a = argument();
+    if (chance(0.02)) o.motion_command = {image::kStartProgram, {static_cast<float>(1 + random_() % 4)}};
     for (auto& t : o.dynamic_data_configuration.type_ids) t = chance(0.5) ? 0 : random_() % 70;
     o.brakes_control = {chance(0.5), chance(0.5)};
     return o;
@@ -66,7 +67,9 @@ void expect_plausible(const Robot& robot) {
 
 TEST(WildHosts, NeverBringTheImageOutOfShape) {
   for (const auto layout : {image::Layout::kFirmware9, image::Layout::kFirmware10, image::Layout::kFirmware11}) {
-    Rig rig(Rig::quick(layout));
+    RobotOptions options = Rig::quick(layout);
+    options.tool = ToolType::kMegp25ls;
+    Rig rig(options);
     WildHost host(42 + static_cast<std::uint64_t>(layout));
     image::Outputs out;
     std::uint64_t moved = 0;

@@ -1,4 +1,5 @@
-// Variables over a cyclic protocol: written by command, read as dynamic data, used as arguments (firmware 11; spec 5.8).
+// Variables over a cyclic protocol: written by command, read as dynamic data, used as arguments (firmware 11;
+// spec 5.8).
 #include "sim/variables.hpp"
 
 #include <limits>
