@@ -42,6 +42,7 @@ sim::RobotOptions model_of(const RobotConfig& robot) {
   // One millisecond, not none: what takes no time at all shows no Busy, and clients wait for its end.
   if (config.instant_homing) {
     options.activation_time = options.homing_time = options.deactivation_time = std::chrono::milliseconds(1);
+    options.boot_time = std::chrono::milliseconds(100);  // long enough for the link to be seen down
   }
   return options;
 }

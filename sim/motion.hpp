@@ -30,6 +30,11 @@ class Motion {
   void clear(Time now) noexcept;
   // Motors off: no ramp, everything forgotten.
   void halt(Time now) noexcept;
+  // After a power loss: as new, but for where the arm is.
+  void restart() noexcept {
+    restore_defaults();
+    checkpoint_reached_ = checkpoint_discarded_ = 0;
+  }
   void restore_defaults() noexcept {
     settings_ = defaults_;
     ++settings_version_;

@@ -1,5 +1,5 @@
-// Offline programs: what the robot has saved, and what runs next, which is the rest of the programs under way before the
-// queue. No allocation after construction.
+// Offline programs: what the robot has saved, and what runs next, which is the rest of the programs under way before
+// the queue. No allocation after construction.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ class Programs {
   Programs(std::vector<Program> programs, Product product, image::Layout layout);
 
   const Program* find(float number) const noexcept;  // nullptr: there is none
-  // Whether StartProgram can start it: 0, 3017 there is none, 3020 it holds a command that is none, has bad arguments or
-  // does not go through the queue (inferred: refused as a whole).
+  // Whether StartProgram can start it: 0, 3017 there is none, 3020 it holds a command that is none, has bad arguments
+  // or does not go through the queue (inferred: refused as a whole).
   std::uint16_t check(float number) const noexcept;
   std::size_t size() const noexcept { return saved_.size(); }
 

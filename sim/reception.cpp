@@ -40,7 +40,6 @@ std::uint16_t missing(const Command& command, const Readiness& r) noexcept {
     case image::kSetCollisionCfg:
     case image::kSetToolSphere:
     case image::kSetCalibrationCfg:
-    case image::kRebootRobot:
       return error::kCommandFailed;
     default:
       break;  // an id from the wire, not an enumeration
@@ -71,6 +70,8 @@ Verdict examine(const Command& received, bool use_variables, const Readiness& r)
   using enum image::CommandClass;
   switch (info->command_class) {
     case kImmediate:
+      if (command.id == image::kRebootRobot && !r.off) return {error::kMustBeDeactivated};
+      break;
     case kOtherRobots:
       break;
     case kConfiguration:

@@ -25,6 +25,8 @@ void Robot::release_p_stop2() noexcept { state_->safety.release_p_stop2(); }
 void Robot::drop_connection() noexcept { state_->safety.drop_connection(); }
 void Robot::restore_connection() noexcept { state_->safety.restore_connection(); }
 void Robot::raise_error(std::uint16_t code) noexcept { state_->fail(code); }
+bool Robot::present() const noexcept { return state_->boot.present(); }
+void Robot::power_cycle() noexcept { state_->power_cycle(); }
 bool Robot::place_part(double width_mm) noexcept { return state_->tool.place_part(width_mm); }
 void Robot::set_monitoring(bool monitoring) noexcept { state_->monitoring = monitoring; }
 

@@ -28,7 +28,9 @@ struct RobotOptions {
   Time activation_time = std::chrono::seconds(2);
   Time homing_time = std::chrono::seconds(4);
   Time deactivation_time = std::chrono::milliseconds(500);
-  bool noise = true;  // plausible noise on actual values (seeded)
+  Time boot_time = std::chrono::seconds(20);
+  bool reboot_stop = false;  // R4: after every boot, the first too, the "Reboot" stop waits for the Reset button
+  bool noise = true;         // plausible noise on actual values (seeded)
   std::uint64_t seed = 1;
   StopSeverity p_stop2_severity = StopSeverity::kClear;  // inferred: the default of the vendor's Python call
   ToolType tool = ToolType::kNone;                       // on the flange
@@ -50,7 +52,9 @@ class Robot {
   // No output image arrived in this cycle: the model only advances (velocity time-out runs).
   void step_without_outputs(Time dt) noexcept;
 
-  const image::Inputs& inputs() const noexcept;  // as of the last step
+  const image::Inputs& inputs() const noexcept;  // as of the last step in which the robot was present
+  // False while it boots, after RebootRobot or a power cycle: nobody answers on the bus.
+  bool present() const noexcept;
 
   // What tests and users may do to a robot.
   void press_e_stop() noexcept;
@@ -61,6 +65,10 @@ class Robot {
   void drop_connection() noexcept;  // the "connection dropped" safety stop
   void restore_connection() noexcept;
   void raise_error(std::uint16_t code) noexcept;
+  // Power fails and comes back at once: the robot is away for `boot_time`, then it is off, not homed, without error
+  // (inferred: also without one that ResetError does not clear), its settings at their defaults and MoveID at 0. The
+  // arm stays where it was; what the robot saves (joint limits, variables, programs) is kept.
+  void power_cycle() noexcept;
   // Puts a part of this width between the gripper's fingers, which close on it; 0 takes it away. False: no gripper, or
   // its fingers are not open wider than that.
   bool place_part(double width_mm) noexcept;

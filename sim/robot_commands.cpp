@@ -26,7 +26,7 @@ void Robot::State::press_e_stop() noexcept {
 }
 
 void Robot::State::take(const image::Outputs& next) noexcept {
-  if (monitoring) return;
+  if (monitoring || !boot.up()) return;
   check_levels(next);
   if (next.host_time.seconds != 0) host_seconds = next.host_time.seconds;
   take_robot_control(next.robot_control);
@@ -114,8 +114,10 @@ void Robot::State::refuse(const Command& command, std::uint16_t code, bool cycli
 }
 
 void Robot::State::receive(const Command& received, bool use_variables, bool cyclic) noexcept {
-  // The error shown stays the first one (inferred); the journal has the 1011.
-  if (error != error::kNone) return refuse(received, error::kAlreadyInError, cyclic);
+  // The error shown stays the first one (inferred); the journal has the 1011. inferred: a reboot is possible, as some
+  // errors need it.
+  if (error != error::kNone && received.id != image::kRebootRobot)
+    return refuse(received, error::kAlreadyInError, cyclic);
   const Verdict verdict = examine(received, use_variables,
                                   {options.product, options.layout, power.off(), power.activated(), power.homed(),
                                    recovery_mode, tool, variables, programs});
@@ -148,6 +150,9 @@ void Robot::State::execute_now(const Command& command) noexcept {
   } else if (command.id == image::kClearHoming) {
     power.forget_homing();
     tool.forget_homing();
+  } else if (command.id == image::kRebootRobot) {
+    lose_power();
+    boot.reboot();
   } else if (variables.find(command.id) != nullptr) {
     if (const auto code = variables.set(command); code != error::kNone) {
       refuse(command, code, false);

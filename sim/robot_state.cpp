@@ -25,10 +25,12 @@ Robot::State::State(const RobotOptions& o)
       tool(o.tool),
       programs(o.programs, o.product, o.layout),
       motion(defaults(o), journal, tool, programs),
+      boot(o.boot_time),
       power({o.activation_time, o.homing_time, o.deactivation_time}),
       safety(o.product, o.p_stop2_severity),
       variables(o.variables),
       slots(o.layout) {
+  safety.boot(o.reboot_stop);
   report();
 }
 
@@ -36,6 +38,8 @@ void Robot::State::advance(Time dt) noexcept {
   dt = std::max(dt, Time(1));
   now += dt;
   ++cycle;
+  if (boot.advance(dt)) start_up();
+  if (!boot.present()) return;
   if (power.advance(dt)) {
     motion.restore_defaults();
     tool.restore_defaults();
@@ -57,6 +61,34 @@ void Robot::State::advance(Time dt) noexcept {
   advance_tool(seconds);
   if (motion.moving()) slots.measured_changed();
   report();
+}
+
+void Robot::State::lose_power() noexcept {
+  power.cut();
+  power.forget_homing();
+  motion.halt(now);
+  tool.cut();
+}
+
+void Robot::State::power_cycle() noexcept {
+  lose_power();
+  boot.cut();
+}
+
+// Everything but what the robot saves and where its arm is.
+void Robot::State::start_up() noexcept {
+  started_at = now;
+  safety.boot(options.reboot_stop);
+  motion.restart();
+  tool.restore_defaults();
+  slots = DynamicSlots(options.layout);
+  error = error::kNone;
+  sim_mode = recovery_mode = brakes_released_by_hand = paused = false;
+  cleared = true;
+  move_id = 0;
+  host_seconds = 0;
+  outputs = {};
+  refused_in_cyclic_mode = {};
 }
 
 void Robot::State::advance_tool(double seconds) noexcept {
@@ -92,7 +124,7 @@ void Robot::State::report() noexcept {
 
   report_pose();
   safety.report(options.layout, inputs);
-  const auto since_boot = std::chrono::duration_cast<std::chrono::microseconds>(kBoot + now).count();
+  const auto since_boot = std::chrono::duration_cast<std::chrono::microseconds>(kBoot + now - started_at).count();
   inputs.robot_timestamp.seconds = static_cast<std::uint32_t>(since_boot / 1'000'000);
   inputs.robot_timestamp.microseconds = static_cast<std::uint32_t>(since_boot % 1'000'000);
   report_dynamic_data();

@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include "sim/boot.hpp"
 #include "sim/dynamic_data.hpp"
 #include "sim/dynamic_values.hpp"
 #include "sim/motion.hpp"
@@ -25,6 +26,7 @@ struct Robot::State {
 
   void fail(std::uint16_t code) noexcept;  // enters the error state
   void press_e_stop() noexcept;
+  void power_cycle() noexcept;
 
   const RobotOptions options;
   Time now{};
@@ -34,6 +36,7 @@ struct Robot::State {
   ExternalTool tool;
   Programs programs;
   Motion motion;
+  Boot boot;
   Power power;
   Safety safety;
   UserLimits limits;
@@ -57,6 +60,8 @@ struct Robot::State {
   void receive(const Command& command, bool use_variables, bool cyclic) noexcept;
   void refuse(const Command& command, std::uint16_t code, bool cyclic) noexcept;
   void execute_now(const Command& command) noexcept;
+  void lose_power() noexcept;
+  void start_up() noexcept;
   void configure(const Command& command) noexcept;
   bool takes_no_commands() const noexcept;
   void check_levels(const image::Outputs& next) noexcept;
@@ -67,6 +72,7 @@ struct Robot::State {
   void report_pose() noexcept;
   void report_dynamic_data() noexcept;
 
+  Time started_at{};        // when the robot came up last
   Joints shown_joints{};    // as published: rounded to binary32
   Joints joint_velocity{};  // target, deg/s
   std::uint32_t shown_settings = 0;

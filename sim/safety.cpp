@@ -8,11 +8,11 @@ void Safety::reset_resettable() noexcept {
 }
 
 bool Safety::present() const noexcept {
-  return e_stop_ != Stop::kReset || p_stop2_ == Stop::kPresent || connection_ == Stop::kPresent;
+  return !motors_allowed() || p_stop2_ == Stop::kPresent || connection_ == Stop::kPresent;
 }
 
 bool Safety::stops_motion() const noexcept {
-  return e_stop_ != Stop::kReset || p_stop2_ != Stop::kReset || connection_ != Stop::kReset;
+  return !motors_allowed() || p_stop2_ != Stop::kReset || connection_ != Stop::kReset;
 }
 
 bool Safety::clears_motion() const noexcept {
@@ -35,11 +35,13 @@ void Safety::report(image::Layout layout, image::Inputs& inputs) const noexcept 
   out.stop.e_stop = e_stop_reported && on(e_stop_);
   out.stop.p_stop2 = on(p_stop2_);
   out.stop.connection_dropped = on(connection_);
+  out.stop.reboot = on(reboot_);
   out.resettable.e_stop = e_stop_reported && resettable(e_stop_);
   out.resettable.p_stop2 = resettable(p_stop2_);
   out.resettable.connection_dropped = resettable(connection_);
-  out.reset_ready = e_stop_reported && resettable(e_stop_);
-  // inferred: the motors' supply, which is there unless an E-Stop took it, activated or not.
+  out.resettable.reboot = resettable(reboot_);
+  out.reset_ready = e_stop_reported && e_stop_ != Stop::kPresent && (resettable(e_stop_) || resettable(reboot_));
+  // inferred: the motors' supply, which is there unless an E-Stop or the Reboot stop took it, activated or not.
   out.vmotor_on = motors_allowed();
 }
 

@@ -20,14 +20,20 @@ class Safety {
   void release_p_stop2() noexcept { release(p_stop2_, true); }
   void drop_connection() noexcept { connection_ = Stop::kPresent; }
   void restore_connection() noexcept { release(connection_, true); }
-  // The Reset button on the power supply of an R4.
+  // The Reset button on the power supply of an R4. inferred: it does nothing while the E-Stop is pressed.
   void press_reset_button() noexcept {
-    if (e_stop_ == Stop::kResettable) e_stop_ = Stop::kReset;
+    if (e_stop_ != Stop::kPresent) e_stop_ = reboot_ = Stop::kReset;
+  }
+  // The robot comes up. What is pressed stays; inferred: what only waited for ResumeMotion is over. An R4 may wait for
+  // the Reset button (spec 5.6, 128:7).
+  void boot(bool reboot_stop) noexcept {
+    reset_resettable();
+    reboot_ = reboot_stop && product_ == Product::kMeca500R4 ? Stop::kResettable : Stop::kReset;
   }
   // ResumeMotion clears what it can (firmware 9: the ResetPStop2 bit).
   void reset_resettable() noexcept;
 
-  bool motors_allowed() const noexcept { return e_stop_ == Stop::kReset; }
+  bool motors_allowed() const noexcept { return e_stop_ == Stop::kReset && reboot_ == Stop::kReset; }
   bool present() const noexcept;        // any signal still there: ResumeMotion does nothing
   bool stops_motion() const noexcept;   // any signal not reset yet
   bool clears_motion() const noexcept;  // and no command is taken
@@ -41,7 +47,7 @@ class Safety {
 
   Product product_;
   StopSeverity p_stop2_severity_;
-  Stop e_stop_ = Stop::kReset, p_stop2_ = Stop::kReset, connection_ = Stop::kReset;
+  Stop e_stop_ = Stop::kReset, p_stop2_ = Stop::kReset, connection_ = Stop::kReset, reboot_ = Stop::kReset;
 };
 
 }  // namespace meca::sim

@@ -31,15 +31,15 @@ class Builtin final : public Transport {
     for (std::size_t i = 0; i < std::min(exchanges.size(), robots_.size()); ++i) {
       auto& [robot, format] = robots_[i];
       Exchange& e = exchanges[i];
-      if (e.output_valid) {
+      if (e.output_valid && robot.present()) {
         robot.step(image::decode_outputs(e.output, format), dt);
       } else {
         robot.step_without_outputs(dt);
       }
-      image::encode_inputs(robot.inputs(), format, e.input);
-      e.fresh = true;
-      e.link = LinkState::kUp;
-      e.link_detail = {};
+      e.fresh = robot.present();
+      e.link = robot.present() ? LinkState::kUp : LinkState::kDown;
+      e.link_detail = robot.present() ? std::string_view{} : "the simulated robot is starting up";
+      if (robot.present()) image::encode_inputs(robot.inputs(), format, e.input);
       // There is no identity object on this bus: the firmware is to be read from dynamic data type 1.
       e.identity = {};
     }

@@ -57,9 +57,10 @@ class Bench {
     out = image::decode_outputs(exchange.output, {layout});
   }
   void exchange_frames() {
-    exchange.link = link_up ? LinkState::kUp : LinkState::kDown;
+    const bool up = link_up && (!sim || sim->present());
+    exchange.link = up ? LinkState::kUp : LinkState::kDown;
     exchange.fresh = false;
-    if (!link_up) {
+    if (!up) {
       if (sim) sim->step_without_outputs(settings.cycle);
       return;
     }

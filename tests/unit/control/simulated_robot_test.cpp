@@ -1,49 +1,11 @@
 // The control machines against the simulated Meca500, which records every rule a host breaks.
-#include "sim/robot.hpp"
-
-#include "tests/unit/control/bench.hpp"
+#include "tests/unit/control/sim_bench.hpp"
 
 namespace meca::test {
 namespace {
 
 using enum ReceiptState;
 using enum CommandKind;
-
-struct SimBench : Bench {
-  explicit SimBench(Layout layout = Layout::kFirmware11, CycleSettings s = {})
-      : Bench(s, layout), model(options(layout)) {
-    sim = &model;
-  }
-  static sim::RobotOptions options(Layout layout) {
-    sim::RobotOptions o;
-    o.layout = layout;
-    o.activation_time = 200ms;
-    o.homing_time = 300ms;
-    o.deactivation_time = 50ms;
-    o.noise = false;
-    return o;
-  }
-  void make_ready() {
-    connect();
-    ASSERT_EQ(outcome(kActivate).state, kCompleted);
-    ASSERT_EQ(outcome(kHome).state, kCompleted);
-  }
-  std::vector<sim::Command> executed() const {
-    std::vector<sim::Command> list;
-    for (auto i = model.journal().first(); i < model.journal().size(); ++i) {
-      const sim::JournalEntry& e = model.journal()[i];
-      const bool own = e.command.id == image::kSetCheckpoint && e.command.arguments[0] > 7000;
-      if (e.outcome == sim::Outcome::kExecuted && !own) list.push_back(e.command);
-    }
-    return list;
-  }
-  void expect_no_violation() const {
-    for (auto i = model.violations().first(); i < model.violations().size(); ++i) {
-      ADD_FAILURE() << model.violations()[i].what;
-    }
-  }
-  sim::Robot model;
-};
 
 class OnEveryFirmware : public testing::TestWithParam<Layout> {};
 

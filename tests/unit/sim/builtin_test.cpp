@@ -86,6 +86,33 @@ TEST_F(BuiltinBus, SpeaksTheLayoutOfTheFirmwareItPlays) {
   EXPECT_FALSE(inputs[0].safety_status.known);
 }
 
+TEST_F(BuiltinBus, SaysThatARobotIsBootingAndLeavesTheOthersAlone) {
+  sim::RobotOptions quick = Rig::quick();
+  quick.boot_time = 50ms;
+  bus = make_builtin({quick, quick});
+  bus->open(now);
+  cycle();
+  outputs[0].motion_control = {.move_id = 1, .set_point = true};
+  outputs[0].motion_command.command_id = image::kRebootRobot;
+  const auto count = [&](LinkState state, std::size_t robot, int cycles) {
+    int found = 0;
+    for (int i = 0; i < cycles; ++i) {
+      cycle();
+      outputs[0] = {};
+      found += exchanges[robot].link == state && exchanges[robot].fresh == (state == LinkState::kUp) ? 1 : 0;
+      EXPECT_EQ(exchanges[robot].link_detail.empty(), exchanges[robot].link == LinkState::kUp);
+    }
+    return found;
+  };
+  EXPECT_EQ(count(LinkState::kUp, 0, 90), 90) << "it says first that it has heard";
+  EXPECT_EQ(inputs[0].motion_status.move_id, 1);
+  EXPECT_EQ(count(LinkState::kDown, 0, 100), 50);
+  EXPECT_EQ(exchanges[0].link, LinkState::kUp);
+  EXPECT_EQ(inputs[0].motion_status.move_id, 0);
+  EXPECT_GT(inputs[1].robot_timestamp.seconds + inputs[1].robot_timestamp.microseconds,
+            inputs[0].robot_timestamp.seconds + inputs[0].robot_timestamp.microseconds);
+}
+
 TEST_F(BuiltinBus, DoesNotMindFewerOrMoreExchangesThanRobots) {
   bus->open(now);
   bus->exchange(now + 1ms, std::span(exchanges).first(1));
