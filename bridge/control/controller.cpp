@@ -115,10 +115,12 @@ void Controller::follow_robot(const View& view) noexcept {
   follow_monitoring_mode(view);
   if (status.error_code != 0) {
     // The robot has cleared its queue itself (spec 5.6).
-    if (!sequencer_.idle()) sequencer_.end_all(ReceiptState::kAborted, Reason::kRobotError, status.error_code);
-    sequencer_.disarm();
+    if (!in_error_) {
+      if (!sequencer_.idle()) sequencer_.end_all(ReceiptState::kAborted, Reason::kRobotError, status.error_code);
+      actions_.discard_queued(Reason::kRobotError);
+    }
+    if (sequencer_.handshake_idle()) sequencer_.disarm();  // but for a reboot, which is asked for in an error
     velocity_.stop();
-    if (!in_error_) actions_.discard_queued(Reason::kRobotError);
   }
   in_error_ = status.error_code != 0;
   const bool stopped = safety_stop(view.in);
@@ -153,6 +155,13 @@ void Controller::follow_monitoring_mode(const View& view) noexcept {
     actions_.seed(view);
     sequencer_.seed(view);
   }
+}
+
+// Until somebody resumes, but not while the motors are off: what such a robot takes moves nothing, and one whose error
+// only a reboot clears can never be resumed.
+bool Controller::held_by_stop(const View& view) const noexcept {
+  const bool off = !view.in.robot_status.activated && !view.in.robot_status.busy;
+  return stop_.active() || (actions_.pause_held_by_stop() && !off);
 }
 
 bool Controller::robot_may_move(const View& view) const noexcept {
@@ -191,7 +200,7 @@ std::optional<Refusal> Controller::refusal_of_command(const CommandRequest& requ
   if (const auto refusal = check_motion_arguments(request, robot)) return refusal;
   if (const auto refusal = check_motion_state(request, view)) return refusal;
   if (actions_.deactivating()) return Refusal{Reason::kNotActivated};
-  if (actions_.pause_held_by_stop() || stop_.active()) return Refusal{Reason::kPaused};
+  if (held_by_stop(view)) return Refusal{Reason::kPaused};
   if (sequencer_.full()) return Refusal{Reason::kQueueFull};
   return std::nullopt;
 }
@@ -335,7 +344,7 @@ void Controller::advance(const View& view) noexcept {
   const bool pause_rises = actions_.pausing() && !was_pausing_;
   was_pausing_ = actions_.pausing();
   if (dropping || pause_rises) sequencer_.pause_rises();
-  const bool hold = dropping || pause_rises || actions_.pause_held_by_stop();
+  const bool hold = dropping || pause_rises || held_by_stop(view);
   sequencer_.advance(view, hold, actions_.pausing());
   if (!arbiter_.owned() && sequencer_.handshake_idle()) sequencer_.disarm();
   velocity_.advance(view, velocity_allowed(view));

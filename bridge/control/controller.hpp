@@ -76,6 +76,7 @@ class Controller {
   void shut_down(const View& view) noexcept;
   void advance(const View& view) noexcept;
   bool robot_may_move(const View& view) const noexcept;
+  bool held_by_stop(const View& view) const noexcept;
   bool loss_stops(const View& view) const noexcept;
   bool velocity_allowed(const View& view) const noexcept;
 

@@ -196,7 +196,8 @@ void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& m
 
 void MoveSequencer::advance(const View& view, bool hold, bool pausing) noexcept {
   if (flight_ || withdrawing_ || hold || !view.fresh || view.in.motion_status.fifo_space == 0) return;
-  if (slowing_down_) return;
+  const bool reboot = !queue_.empty() && queue_.front().ticket.motion_command_id == image::kRebootRobot;
+  if (slowing_down_ && !reboot) return;
   const bool paused = view.in.motion_status.paused || (pausing && view.in.robot_status.activated);
   if (paused && rest_images_ <= kRestImages) return;
   if (checkpoint_due_) {

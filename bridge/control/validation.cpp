@@ -191,10 +191,11 @@ std::optional<Refusal> check_motion_state(const CommandRequest& r, const View& v
   const image::MotionCommandInfo* info = image::find_motion_command(r.motion_command_id);
   const image::RobotStatus& status = view.in.robot_status;
   // inferred: a reboot takes the motors from under whatever the arm is doing, so it is for a robot at rest.
-  const bool off_only = r.motion_command_id == image::kRebootRobot;
-  if (off_only && (status.activated || status.busy)) return Refusal{Reason::kWrongState};
+  const bool reboot = r.motion_command_id == image::kRebootRobot;
+  if (reboot && (status.activated || status.busy)) return Refusal{Reason::kWrongState};
+  // inferred: a reboot is for errors that nothing else clears, so a robot takes it in one.
+  if (status.error_code != 0 && !reboot) return Refusal{Reason::kRobotError, {.robot_error = status.error_code}};
   if (!info || info->command_class == CommandClass::kImmediate) return std::nullopt;
-  if (status.error_code != 0) return Refusal{Reason::kRobotError, {.robot_error = status.error_code}};
   if (info->command_class == CommandClass::kConfiguration) {
     if (status.activated || status.busy) return Refusal{Reason::kWrongState};
     return std::nullopt;

@@ -49,6 +49,35 @@ TEST(RebootOfARobot, is_acknowledged_cuts_the_link_and_needs_everything_anew) {
   get_going(b);
 }
 
+TEST(RebootOfARobot, clears_an_error_that_cannot_be_reset_and_is_all_that_is_taken_in_one) {
+  SimBench b;
+  b.connect();
+  b.model.raise_error(3006);
+  b.steps(10);
+  EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kSetTimeScaling, {50}))), kRejected, Reason::kRobotError);
+  EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kRebootRobot, {}))), kCompleted, Reason::kNone);
+  come_back(b);
+  EXPECT_EQ(b.result->record.inputs.robot_status.error_code, 0);
+  get_going(b);
+}
+
+TEST(RebootOfARobot, is_open_to_who_comes_after_an_owner_that_died_in_such_an_error) {
+  SimBench b;
+  b.make_ready();
+  b.move(60);
+  b.steps(20);
+  b.keep_alive = false;
+  b.steps(300);  // the lease is over, the stop is done
+  b.model.raise_error(3006);
+  b.steps(10);
+  EXPECT_OUTCOME(b.outcome(kTakeControl), kCompleted, Reason::kNone);
+  b.keep_alive = true;
+  EXPECT_OUTCOME(b.outcome(kDeactivate), kCompleted, Reason::kNone);
+  EXPECT_OUTCOME(b.outcome(b.send(b.motion(image::kRebootRobot, {}))), kCompleted, Reason::kNone);
+  come_back(b);
+  get_going(b);
+}
+
 TEST(PowerCycleOfARobot, clears_an_error_that_cannot_be_reset) {
   SimBench b;
   b.connect();
