@@ -4,7 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "sim/noise.hpp"
 
 #include "transports/image/motion_commands.hpp"
 
@@ -21,15 +22,7 @@ Values floats(const std::array<double, 6>& v) noexcept {
 
 float f(double v) noexcept { return static_cast<float>(v); }
 
-// Uniform in -1..1, a hash of seed, cycle and channel: no state, so every slot of a cycle sees the same arm.
-double noise(const DynamicSource& s, std::uint64_t channel) noexcept {
-  if (!s.options.noise) return 0;
-  std::uint64_t x = s.options.seed * 0x9E3779B97F4A7C15u + s.cycle * 64 + channel;  // splitmix64
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  x ^= x >> 31;
-  return static_cast<double>(x >> 11) * 0x1.0p-52 - 1.0;
-}
+double noise(const DynamicSource& s, std::uint64_t channel) noexcept { return sim::noise(s.options, s.cycle, channel); }
 
 // A real robot at rest moves by about 0.001 degrees (published 1 kHz log).
 Joints actual_joints(const DynamicSource& s) noexcept {
@@ -42,15 +35,6 @@ Joints actual_velocity(const DynamicSource& s) noexcept {
   Joints out = s.joint_velocity;
   for (std::size_t i = 0; i < 6; ++i) out[i] += 0.05 * noise(s, 8 + i);  // inferred size
   return out;
-}
-
-// In percent of what each motor can do. Not published: a plausible share of gravity on joints 2, 3 and 5, no more.
-Joints torque(const DynamicSource& s) noexcept {
-  constexpr double kDegree = std::numbers::pi / 180;
-  const double q2 = s.joints[1] * kDegree, q23 = (s.joints[1] + s.joints[2]) * kDegree;
-  const double load = 1 + 2 * s.settings.payload[0];  // 0.5 kg doubles it
-  const double forearm = std::cos(q23) * load;
-  return {0, 12 * std::sin(q2) + 10 * forearm, 10 * forearm, 0, 3 * std::cos(q23 + s.joints[4] * kDegree) * load, 0};
 }
 
 Twist cartesian_velocity(const DynamicSource& s, const Joints& velocity) noexcept {
@@ -165,6 +149,14 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
 
 }  // namespace
 
+Torques torques(const DynamicSource& s) noexcept {
+  if (!s.powered) return {};
+  Torques out;
+  out.calculated = calculated_torques(s.joints, s.joint_acceleration, s.settings.payload);
+  for (std::size_t i = 0; i < 6; ++i) out.actual[i] = out.calculated[i] + s.push[i] + 0.5 * noise(s, 24 + i);
+  return out;
+}
+
 std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) noexcept {
   const bool variable = type >= image::kFirstVariable && s.options.layout == image::Layout::kFirmware11;
   if (variable) return s.variables.values(type);
@@ -172,7 +164,8 @@ std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) 
     case 32:
       return floats(s.joint_velocity);
     case 33:
-      return floats(torque(s));
+      // Manual 9.2 calls it not implemented yet.
+      return s.options.layout == image::Layout::kFirmware9 ? Values{} : floats(torques(s).calculated);
     case 34:
       return floats(cartesian_velocity(s, s.joint_velocity));
     case 40:
@@ -181,11 +174,8 @@ std::array<float, 6> dynamic_values(std::uint32_t type, const DynamicSource& s) 
       return actual_pose(s);
     case 42:
       return floats(actual_velocity(s));
-    case 43: {
-      Joints t = torque(s);
-      for (std::size_t i = 0; i < 6; ++i) t[i] += 0.5 * noise(s, 24 + i);
-      return floats(t);
-    }
+    case 43:
+      return floats(torques(s).actual);
     case 44:
       return floats(cartesian_velocity(s, actual_velocity(s)));
     case 45:

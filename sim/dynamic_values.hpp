@@ -7,6 +7,7 @@
 #include "sim/robot.hpp"
 #include "sim/settings.hpp"
 #include "sim/tool.hpp"
+#include "sim/torque.hpp"
 #include "sim/user_limits.hpp"
 #include "sim/variables.hpp"
 
@@ -19,10 +20,16 @@ struct DynamicSource {
   const UserLimits& limits;
   const Variables& variables;
   const ExternalTool& tool;
-  const Joints& joints;          // target, deg
-  const Joints& joint_velocity;  // target, deg/s
-  std::uint64_t cycle;           // the noise of one cycle is the same in all slots
+  const Joints& joints;              // target, deg
+  const Joints& joint_velocity;      // target, deg/s
+  const Joints& joint_acceleration;  // target, deg/s^2
+  const Joints& push;                // what outside forces add to the motors' torques, %
+  bool powered;                      // motors on
+  std::uint64_t cycle;               // the noise of one cycle is the same in all slots
 };
+
+// Without power the motors give no torque: the brakes hold the arm.
+Torques torques(const DynamicSource& source) noexcept;
 
 // Types that no Meca500 has, or that no document names, give zeros (inferred: the manual only says what the known ones
 // hold).

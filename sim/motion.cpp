@@ -91,6 +91,14 @@ bool Motion::moving() const noexcept {
   return active_count_ > 1 || active_[0].segment.kind() != Segment::Kind::kDelay;
 }
 
+bool Motion::accelerating() const noexcept {
+  if (velocity_.active()) return velocity_.accelerating();
+  if (!moving()) return false;
+  const Active& a = active_[0];
+  const bool in_ramp = a.elapsed < a.segment.ramp() || a.elapsed > a.segment.duration() - a.segment.ramp();
+  return active_count_ > 1 || in_ramp || going_ < 1;
+}
+
 // How much path time passes in `seconds`: stops and goes on along the path with a smooth change of pace. A pause takes
 // effect at once (published: within 5 ms) and needs the ramp of the move under way to come to rest.
 double Motion::pace(double seconds) noexcept {

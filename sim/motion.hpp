@@ -50,6 +50,8 @@ class Motion {
   std::size_t fifo_space() const noexcept { return next_.queue().space(); }
   std::uint16_t running_program() const noexcept { return next_.running(); }  // 0 none
   bool moving() const noexcept;
+  // In an acceleration phase: speeding up, slowing down, or rounding a corner.
+  bool accelerating() const noexcept;
   bool nothing_to_do() const noexcept { return active_count_ == 0 && next_.empty() && !velocity_.active(); }
   bool clearing() const noexcept { return clearing_; }
   std::uint16_t checkpoint_reached() const noexcept { return checkpoint_reached_; }

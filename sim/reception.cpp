@@ -33,8 +33,6 @@ std::uint16_t missing(const Command& command, const Readiness& r) noexcept {
   switch (id) {
     case image::kStartProgram:
       return r.programs.check(command.arguments[0]);
-    case image::kSetTorqueLimits:
-    case image::kSetTorqueLimitsCfg:
     case image::kSetWorkZoneCfg:
     case image::kSetWorkZoneLimits:
     case image::kSetCollisionCfg:

@@ -24,6 +24,9 @@ void Robot::press_p_stop2() noexcept { state_->safety.press_p_stop2(); }
 void Robot::release_p_stop2() noexcept { state_->safety.release_p_stop2(); }
 void Robot::drop_connection() noexcept { state_->safety.drop_connection(); }
 void Robot::restore_connection() noexcept { state_->safety.restore_connection(); }
+void Robot::push(int joint, double percent) noexcept {
+  if (joint >= 1 && joint <= 6) state_->push[static_cast<std::size_t>(joint - 1)] = percent;
+}
 void Robot::raise_error(std::uint16_t code) noexcept { state_->fail(code); }
 bool Robot::present() const noexcept { return state_->boot.present(); }
 void Robot::power_cycle() noexcept { state_->power_cycle(); }

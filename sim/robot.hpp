@@ -64,6 +64,8 @@ class Robot {
   void release_p_stop2() noexcept;
   void drop_connection() noexcept;  // the "connection dropped" safety stop
   void restore_connection() noexcept;
+  // An outside force on a joint (1..6), as torque in percent of what its motor can give; it stays until changed.
+  void push(int joint, double percent) noexcept;
   void raise_error(std::uint16_t code) noexcept;
   // Power fails and comes back at once: the robot is away for `boot_time`, then it is off, not homed, without error
   // (inferred: also without one that ResetError does not clear), its settings at their defaults and MoveID at 0. The

@@ -43,7 +43,7 @@ void Robot::State::advance(Time dt) noexcept {
   if (power.advance(dt)) {
     motion.restore_defaults();
     tool.restore_defaults();
-    for (const std::uint32_t type : {20u, 21u, 22u, 25u, 29u, 31u, 54u}) slots.changed(type);
+    for (const std::uint32_t type : {20u, 21u, 22u, 24u, 25u, 29u, 31u, 54u}) slots.changed(type);
     paused = false;
   }
   if (power.homed()) tool.home();
@@ -57,7 +57,12 @@ void Robot::State::advance(Time dt) noexcept {
     if (const auto code = motion.advance(now, dt, l, recovery_mode); code != error::kNone) fail(code);
   }
   const double seconds = std::chrono::duration<double>(dt).count();
-  for (std::size_t i = 0; i < 6; ++i) joint_velocity[i] = (motion.joints()[i] - before[i]) / seconds;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double velocity = (motion.joints()[i] - before[i]) / seconds;
+    joint_acceleration[i] = (velocity - joint_velocity[i]) / seconds;
+    joint_velocity[i] = velocity;
+  }
+  watch_torques();
   advance_tool(seconds);
   if (motion.moving()) slots.measured_changed();
   report();
@@ -99,6 +104,24 @@ void Robot::State::advance_tool(double seconds) noexcept {
   }
 }
 
+// inferred: the limits hold while the motors are on, but only motion that is not paused already is stopped. So an error
+// can be reset while something still leans on the arm; without the cause gone or the limits raised, it comes back with
+// ResumeMotion.
+void Robot::State::watch_torques() noexcept {
+  const Settings& s = motion.settings();
+  excessive_torque =
+      s.torque_severity != 0 && power.ready() && excessive(torques(measured()), s, motion.accelerating());
+  if (!excessive_torque || paused) return;
+  constexpr int kPause = 2, kError = 4;
+  if (s.torque_severity == kPause) paused = true;
+  if (s.torque_severity == kError) fail(error::kTorqueLimit);
+}
+
+DynamicSource Robot::State::measured() const noexcept {
+  return {options,        motion.settings(),  limits, variables,         tool, motion.joints(),
+          joint_velocity, joint_acceleration, push,   power.activated(), cycle};
+}
+
 void Robot::State::report() noexcept {
   image::RobotStatus& r = inputs.robot_status;
   r.busy = power.busy();
@@ -120,6 +143,7 @@ void Robot::State::report() noexcept {
   m.paused = paused && power.activated();
   m.eom = !moving;
   m.eob = !moving && motion.nothing_to_do();
+  m.excessive_torque = excessive_torque;
   m.cleared = (cleared || !power.activated()) && !moving;
 
   report_pose();
@@ -139,7 +163,7 @@ void Robot::State::report_pose() noexcept {
   }
   const bool settings_changed = shown_settings != motion.settings_version();
   if (settings_changed) {
-    for (const std::uint32_t type : {20u, 21u, 22u, 29u, 31u}) slots.changed(type);
+    for (const std::uint32_t type : {20u, 21u, 22u, 24u, 25u, 29u, 31u}) slots.changed(type);
   }
   if (shown_before && !settings_changed && rounded == shown_joints) return;
   shown_before = true;
@@ -160,8 +184,7 @@ void Robot::State::report_pose() noexcept {
 
 void Robot::State::report_dynamic_data() noexcept {
   const auto types = slots.advance(outputs.dynamic_data_configuration.type_ids);
-  const DynamicSource source{options, motion.settings(), limits,         variables,
-                             tool,    motion.joints(),   joint_velocity, cycle};
+  const DynamicSource source = measured();
   for (std::size_t i = 0; i < image::kDynamicSlots; ++i) {
     inputs.dynamic_data[i] = {types[i], dynamic_values(types[i], source)};
   }

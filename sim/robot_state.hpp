@@ -42,6 +42,7 @@ struct Robot::State {
   UserLimits limits;
   Variables variables;
   DynamicSlots slots;
+  Joints push{};  // % of each motor's torque
   std::uint16_t error = 0;
   bool monitoring = false, sim_mode = false, recovery_mode = false;
   bool brakes_released_by_hand = false;  // while deactivated
@@ -68,13 +69,17 @@ struct Robot::State {
   void violation(std::string_view what) noexcept { violations.add({now, what}); }
 
   void advance_tool(double seconds) noexcept;
+  void watch_torques() noexcept;
+  DynamicSource measured() const noexcept;
+
   void report() noexcept;
   void report_pose() noexcept;
   void report_dynamic_data() noexcept;
 
-  Time started_at{};        // when the robot came up last
-  Joints shown_joints{};    // as published: rounded to binary32
-  Joints joint_velocity{};  // target, deg/s
+  Time started_at{};                              // when the robot came up last
+  Joints shown_joints{};                          // as published: rounded to binary32
+  Joints joint_velocity{}, joint_acceleration{};  // target, deg/s and deg/s^2
+  bool excessive_torque = false;
   std::uint32_t shown_settings = 0;
   bool shown_before = false;
   Command refused_in_cyclic_mode;  // so that the journal is not flooded with it

@@ -103,11 +103,27 @@ bool apply_conf(const Command& c, const Joints& now, Settings& s) noexcept {
   }
 }
 
+bool apply_torque(const Command& c, Settings& s) noexcept {
+  switch (c.id) {
+    case image::kSetTorqueLimits:
+      std::copy(c.arguments.begin(), c.arguments.end(), s.torque_limits.begin());
+      return true;
+    case image::kSetTorqueLimitsCfg:
+      s.torque_severity = static_cast<int>(c.arguments[0]);
+      s.torque_mode = static_cast<int>(c.arguments[1]);
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 bool apply(const Command& command, const Joints& now, Settings& settings) noexcept {
-  if (apply_speeds(command, settings) || apply_move_mode(command, settings) || apply_conf(command, now, settings))
+  if (apply_speeds(command, settings) || apply_move_mode(command, settings) || apply_conf(command, now, settings) ||
+      apply_torque(command, settings)) {
     return true;
+  }
   if (command.id == image::kSetTrf) {
     settings.trf = six(command);
     settings.trf_transform = to_transform(settings.trf);

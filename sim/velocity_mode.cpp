@@ -51,7 +51,7 @@ void VelocityMode::command(const Command& command) noexcept {
 }
 
 void VelocityMode::halt() noexcept {
-  active_ = cancelled_ = moving_ = false;
+  active_ = cancelled_ = moving_ = accelerating_ = false;
   velocity_ = {};
 }
 
@@ -88,6 +88,7 @@ void VelocityMode::step(double seconds, const Settings& settings, const JointLim
   Joints slope;  // deg/s^2: full speed in one ramp
   for (std::size_t i = 0; i < 6; ++i) slope[i] = kTopSpeed[i] / ramp;
 
+  const Joints before = velocity_;
   const Joints target = wanted(settings, d, joints);
   double k = 1;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -99,6 +100,7 @@ void VelocityMode::step(double seconds, const Settings& settings, const JointLim
 
   if (command_.id != image::kMoveJointsVel && would_stretch(joints, velocity_, seconds)) velocity_ = {};
 
+  accelerating_ = velocity_ != before;
   moving_ = false;
   for (std::size_t i = 0; i < 6; ++i) {
     joints[i] += velocity_[i] * seconds;

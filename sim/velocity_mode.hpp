@@ -22,10 +22,11 @@ class VelocityMode {
 
   bool active() const noexcept { return active_; }
   bool moving() const noexcept { return moving_; }
+  bool accelerating() const noexcept { return accelerating_; }  // speeding up, slowing down or turning
 
  private:
   Command command_;
-  bool active_ = false, cancelled_ = false, moving_ = false;
+  bool active_ = false, cancelled_ = false, moving_ = false, accelerating_ = false;
   double age_ = 0;     // s since the last command
   Joints velocity_{};  // deg/s, now
 
