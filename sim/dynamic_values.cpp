@@ -70,7 +70,7 @@ Values limits(const JointLimits& l, std::size_t first) noexcept {
 
 // Firmware 9 gives minimum and maximum of each joint in turn for types 14 and 15.
 Values effective_limits(const DynamicSource& s, std::size_t first) noexcept {
-  const Values v = limits(s.limits.effective(), first);
+  const Values v = limits(s.configuration.joint_limits.effective(), first);
   if (s.options.layout != image::Layout::kFirmware9) return v;
   return {v[0], v[3], v[1], v[4], v[2], v[5]};
 }
@@ -95,10 +95,51 @@ Values speeds(const DynamicSource& source) noexcept {
   return v;
 }
 
-// Settings of the queue and the robot, types 1..31, 36, 54, 61 and 62.
+Values work_zone_limits(const WorkZone& z) noexcept {
+  return {f(z.minimum[0]), f(z.minimum[1]), f(z.minimum[2]), f(z.maximum[0]), f(z.maximum[1]), f(z.maximum[2])};
+}
+
+float number(Part::Group group) noexcept { return f(static_cast<int>(group)); }
+
+Values collision_status(const Watch& watch) noexcept {
+  if (!watch.event()) return {};
+  const Breach& b = watch.breach();
+  return {1, number(b.first.group), f(b.first.id), number(b.second.group), f(b.second.id)};
+}
+
+Values work_zone_status(const Watch& watch) noexcept {
+  if (!watch.event()) return {};
+  return {1, number(watch.breach().first.group), f(watch.breach().first.id)};
+}
+
+// Work zone, tool sphere, calibration and collisions, types 17..19, 30 and 36..38.
+Values surroundings(std::uint32_t type, const DynamicSource& source) noexcept {
+  const Configuration& c = source.configuration;
+  switch (type) {
+    case 17:
+      return {f(c.work_zone.severity), f(static_cast<int>(c.work_zone.mode))};
+    case 18:
+      return work_zone_limits(c.work_zone);
+    case 19:
+      return {f(c.tool_sphere.centre[0]), f(c.tool_sphere.centre[1]), f(c.tool_sphere.centre[2]),
+              f(c.tool_sphere.radius)};
+    case 30:
+      return {c.calibration_enabled ? 1.0f : 0.0f, 1};  // calibrated at the factory
+    case 36:
+      return {f(c.collision_severity)};
+    case 37:
+      return collision_status(source.zones.collision_watch());
+    case 38:
+      return work_zone_status(source.zones.work_zone_watch());
+    default:
+      return {};  // types from the wire, not an enumeration
+  }
+}
+
+// Settings of the queue and the robot, types 1..31, 54, 61 and 62.
 Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
   const Settings& s = source.settings;
-  const UserLimits& l = source.limits;
+  const UserLimits& l = source.configuration.joint_limits;
   switch (type) {
     case 1:
       return firmware(source.options);
@@ -116,10 +157,6 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
       return effective_limits(source, 0);
     case 15:
       return effective_limits(source, 3);
-    case 17:
-      return {0, 1};  // work zone: silent, flange centre (the default is not published)
-    case 18:
-      return {-10000, -10000, -10000, 10000, 10000, 10000};
     case 20:
       return wanted_configuration(s);
     case 21:
@@ -132,8 +169,6 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
       return floats(s.torque_limits);
     case 29:
       return {f(s.move_mode), f(s.move_duration_severity), f(s.move_duration)};
-    case 30:
-      return {1, 1};  // calibrated at the factory
     case 31:
       return {f(s.payload[0]), f(s.payload[1]), f(s.payload[2]), f(s.payload[3])};
     case 54:
@@ -143,7 +178,7 @@ Values configured(std::uint32_t type, const DynamicSource& source) noexcept {
     case 62:
       return limits(l.configured(), 3);
     default:
-      return {};  // types from the wire, not an enumeration
+      return surroundings(type, source);
   }
 }
 

@@ -4,12 +4,13 @@
 #include <array>
 #include <cstdint>
 
+#include "sim/configuration.hpp"
 #include "sim/robot.hpp"
 #include "sim/settings.hpp"
 #include "sim/tool.hpp"
 #include "sim/torque.hpp"
-#include "sim/user_limits.hpp"
 #include "sim/variables.hpp"
+#include "sim/zones.hpp"
 
 namespace meca::sim {
 
@@ -17,7 +18,8 @@ namespace meca::sim {
 struct DynamicSource {
   const RobotOptions& options;
   const Settings& settings;
-  const UserLimits& limits;
+  const Configuration& configuration;
+  const Zones& zones;
   const Variables& variables;
   const ExternalTool& tool;
   const Joints& joints;              // target, deg

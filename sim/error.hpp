@@ -11,6 +11,7 @@ inline constexpr std::uint16_t kNone = 0, kBufferFull = 1000, kUnknownCommand = 
                                kStartConfMismatch = 1033, kNoGripper = 1038, kCommandFailed = 1040,
                                kNoPneumaticModule = 1041, kNotAllowedNow = 1046, kGetVariable = 1551,
                                kSetVariable = 1554, kProgramNotFound = 3017, kProgramInvalid = 3020,
-                               kProgramRecursion = 3023, kTorqueLimit = 3029, kDurationTooShort = 3051;
+                               kProgramRecursion = 3023, kTorqueLimit = 3029, kCollision = 3041, kWorkZone = 3049,
+                               kDurationTooShort = 3051;
 
 }  // namespace meca::sim::error

@@ -32,6 +32,11 @@ bool is_linear_move(std::uint32_t id) noexcept {
   return id == image::kMoveLin || id == image::kMoveLinRelTrf || id == image::kMoveLinRelWrf;
 }
 
+constexpr double kShortestRamp = 0.01;  // s, to come to rest from full pace or to reach it
+
+// From 0 to 1 without a kink at the ends.
+double smooth(double x) noexcept { return x * x * (3 - 2 * x); }
+
 bool is_move(std::uint32_t id) noexcept { return is_joint_move(id) || is_linear_move(id); }
 
 // inferred: a program begins from rest.
@@ -99,6 +104,24 @@ bool Motion::accelerating() const noexcept {
   return active_count_ > 1 || in_ramp || going_ < 1;
 }
 
+// Seconds from full pace to rest, `ahead` seconds of path time from now: the ramp of the move under way, or as much of
+// it as the arm is fast.
+double Motion::brake_time(double ahead) const noexcept {
+  double ramp = 0, speed = 0;
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const Segment& s = active_[i].segment;
+    if (s.kind() == Segment::Kind::kDelay) continue;
+    ramp = std::max(ramp, s.ramp());
+    speed += s.profile().at(active_[i].elapsed + ahead).speed / s.profile().top_speed();
+  }
+  return std::max(kShortestRamp, ramp * std::min(1.0, speed));
+}
+
+void Motion::hold(bool held) noexcept {
+  if (held && !held_) brake_ = brake_time(0);
+  held_ = held;
+}
+
 // How much path time passes in `seconds`: stops and goes on along the path with a smooth change of pace. A pause takes
 // effect at once (published: within 5 ms) and needs the ramp of the move under way to come to rest.
 double Motion::pace(double seconds) noexcept {
@@ -106,11 +129,31 @@ double Motion::pace(double seconds) noexcept {
     going_ = held_ ? 0 : 1;
     return held_ ? 0 : seconds;
   }
-  const double ramp = std::max(active_[0].segment.ramp(), 0.01);
+  const double ramp = held_ ? brake_ : std::max(active_[0].segment.ramp(), kShortestRamp);
   const double before = going_;
   going_ = std::clamp(going_ + (held_ ? -seconds : seconds) / ramp, 0.0, 1.0);
-  const auto smooth = [](double x) { return x * x * (3 - 2 * x); };
   return seconds * (smooth(before) + smooth(going_)) / 2;
+}
+
+Joints Motion::rest_ahead(Time dt, bool recovery_mode) const noexcept {
+  const double seconds = std::chrono::duration<double>(dt).count() * settings_.time_scaling / 100;
+  if (velocity_.active()) return velocity_.rest_ahead(seconds, settings_, recovery_mode, joints_);
+  if (active_count_ == 0 || active_[0].segment.kind() == Segment::Kind::kDelay) return joints_;
+  const double ramp = std::max(active_[0].segment.ramp(), kShortestRamp);
+  const double x = held_ ? going_ : std::min(1.0, going_ + seconds / ramp);
+  const double next_step = held_ ? 0 : seconds * smooth(x);
+  const double brake = held_ ? brake_ : brake_time(next_step);
+  const double way = next_step + brake * x * x * x * (1 - x / 2);  // the integral of smooth() down to 0
+  const auto where = [way](const Active& a) {
+    Segment segment = a.segment;  // following a line changes it
+    return segment.at(a.elapsed + way);
+  };
+  Joints out = where(active_[0]);
+  if (active_count_ > 1) {
+    const Joints from = active_[1].segment.start(), q = where(active_[1]);
+    for (std::size_t i = 0; i < 6; ++i) out[i] += q[i] - from[i];
+  }
+  return out;
 }
 
 // Path time of the older segment from which a successor may run at the same time: at blending 100 %, its whole ramp.

@@ -25,7 +25,7 @@ class Motion {
   void repeat_velocity(Time now, const Command& command) noexcept;
 
   // Level: while true the arm ramps down along its path and stays; while false it goes on.
-  void hold(bool held) noexcept { held_ = held; }
+  void hold(bool held) noexcept;
   // Empties the queue; a move under way ramps down and is then forgotten (while held).
   void clear(Time now) noexcept;
   // Motors off: no ramp, everything forgotten.
@@ -44,6 +44,8 @@ class Motion {
   std::uint16_t advance(Time now, Time dt, const JointLimits& limits, bool recovery_mode) noexcept;
 
   const Joints& joints() const noexcept { return joints_; }
+  // Where the arm comes to rest if it is held after one more step of `dt`.
+  Joints rest_ahead(Time dt, bool recovery_mode) const noexcept;
   const Settings& settings() const noexcept { return settings_; }
   Settings& settings() noexcept { return settings_; }
   std::uint32_t settings_version() const noexcept { return settings_version_; }
@@ -77,6 +79,7 @@ class Motion {
   Joints joints_{};
   bool held_ = false, clearing_ = false;
   double going_ = 1;  // 0 stopped .. 1 full pace along the path
+  double brake_ = 0;  // s from full pace to rest, while held
   std::uint16_t checkpoint_reached_ = 0, checkpoint_discarded_ = 0;
 
   std::uint16_t start_next(Time now, const JointLimits& limits, bool recovery_mode) noexcept;
@@ -85,6 +88,7 @@ class Motion {
   void run_velocity(Time now, double seconds, const JointLimits& limits, bool recovery_mode) noexcept;
   std::uint16_t execute(const Command& command, const Joints& from) noexcept;
   double pace(double seconds) noexcept;
+  double brake_time(double ahead) const noexcept;
   double blend_start() const noexcept;
   bool can_blend() const noexcept;
   bool successor_blends() const noexcept;

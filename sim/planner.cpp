@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/error.hpp"
+#include "sim/severity.hpp"
 #include "transports/image/motion_commands.hpp"
 
 namespace meca::sim {
@@ -133,12 +134,11 @@ double Planner::joint_time(const Joints& target) const noexcept {
 }
 
 std::uint16_t Planner::give_time(double cruise, double ramp, Segment& segment) const noexcept {
-  constexpr int kErrorSeverity = 4;
   segment.profile_ = Profile(cruise, ramp);
   if (settings_.move_mode == 0) return error::kNone;
   const bool too_short = settings_.move_duration < segment.profile_.duration();
   if (!too_short) segment.profile_ = segment.profile_.lasting(settings_.move_duration);
-  return too_short && settings_.move_duration_severity == kErrorSeverity ? error::kDurationTooShort : error::kNone;
+  return too_short && settings_.move_duration_severity == severity::kError ? error::kDurationTooShort : error::kNone;
 }
 
 std::uint16_t Planner::plan_joints(const Joints& target, Segment& segment) const noexcept {

@@ -30,18 +30,7 @@ bool is_variable(std::uint32_t id) noexcept { return id >= image::kFirstVariable
 std::uint16_t missing(const Command& command, const Readiness& r) noexcept {
   const std::uint32_t id = command.id;
   if (const auto code = r.tool.missing(id); code != error::kNone) return code;
-  switch (id) {
-    case image::kStartProgram:
-      return r.programs.check(command.arguments[0]);
-    case image::kSetWorkZoneCfg:
-    case image::kSetWorkZoneLimits:
-    case image::kSetCollisionCfg:
-    case image::kSetToolSphere:
-    case image::kSetCalibrationCfg:
-      return error::kCommandFailed;
-    default:
-      break;  // an id from the wire, not an enumeration
-  }
+  if (id == image::kStartProgram) return r.programs.check(command.arguments[0]);
   return is_variable(id) && r.variables.find(id) == nullptr ? error::kSetVariable : error::kNone;
 }
 

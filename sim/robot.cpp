@@ -27,6 +27,10 @@ void Robot::restore_connection() noexcept { state_->safety.restore_connection();
 void Robot::push(int joint, double percent) noexcept {
   if (joint >= 1 && joint <= 6) state_->push[static_cast<std::size_t>(joint - 1)] = percent;
 }
+void Robot::place_obstacle(double x, double y, double z, double radius) noexcept {
+  const Vec3 centre{x, y, z};
+  state_->zones.place_obstacle(radius > 0 ? std::optional<Capsule>({centre, centre, radius}) : std::nullopt);
+}
 void Robot::raise_error(std::uint16_t code) noexcept { state_->fail(code); }
 bool Robot::present() const noexcept { return state_->boot.present(); }
 void Robot::power_cycle() noexcept { state_->power_cycle(); }

@@ -66,6 +66,9 @@ class Robot {
   void restore_connection() noexcept;
   // An outside force on a joint (1..6), as torque in percent of what its motor can give; it stays until changed.
   void push(int joint, double percent) noexcept;
+  // A sphere in the base frame (mm) that the robot sees coming; radius 0 takes it away. It is watched with
+  // SetCollisionCfg, as the arm's own links are.
+  void place_obstacle(double x, double y, double z, double radius) noexcept;
   void raise_error(std::uint16_t code) noexcept;
   // Power fails and comes back at once: the robot is away for `boot_time`, then it is off, not homed, without error
   // (inferred: also without one that ResetError does not clear), its settings at their defaults and MoveID at 0. The

@@ -81,6 +81,7 @@ void Robot::State::take_motion_control(const image::MotionControl& c) noexcept {
     resume_if_possible();
   } else if (c.resume_motion && !outputs.motion_control.resume_motion && !safety.present()) {
     safety.reset_resettable();
+    if (error == error::kNone) zones.accept();
     resume_if_possible();
   }
 }
@@ -163,23 +164,13 @@ void Robot::State::execute_now(const Command& command) noexcept {
 }
 
 void Robot::State::configure(const Command& command) noexcept {
-  const auto& a = command.arguments;
-  bool good = false;
-  if (command.id == image::kSetJointLimitsCfg) {
-    limits.enable(a[0] != 0);
-    slots.changed(11);
-    good = true;
-  } else if (command.id == image::kSetJointLimits) {
-    good = limits.set(static_cast<int>(a[0]), a[1], a[2]);
-    for (const std::uint32_t type : {61u, 62u}) slots.changed(type);
-  }
-  for (const std::uint32_t type : {14u, 15u}) slots.changed(type);
-  if (good) {
-    journal.add({now, command, Outcome::kExecuted, 0});
-  } else {
+  if (!sim::configure(command, configuration)) {
     refuse(command, error::kArguments, false);
-    fail(error::kArguments);
+    return fail(error::kArguments);
   }
+  zones.restart();
+  for (const std::uint32_t type : shown_by(command.id)) slots.changed(type);
+  journal.add({now, command, Outcome::kExecuted, 0});
 }
 
 // A host that does not wait for the confirmation works by luck on a real robot.

@@ -45,6 +45,7 @@ void Robot::State::advance(Time dt) noexcept {
     tool.restore_defaults();
     for (const std::uint32_t type : {20u, 21u, 22u, 24u, 25u, 29u, 31u, 54u}) slots.changed(type);
     paused = false;
+    zones.restart();
   }
   if (power.homed()) tool.home();
   if (safety.stops_motion()) paused = true;
@@ -53,7 +54,7 @@ void Robot::State::advance(Time dt) noexcept {
   if (power.ready()) {
     motion.hold(paused);
     // Recovery mode leaves the user's limits, not the arm's (spec 5.6).
-    const JointLimits& l = recovery_mode ? kModelLimits : limits.effective();
+    const JointLimits& l = recovery_mode ? kModelLimits : configuration.joint_limits.effective();
     if (const auto code = motion.advance(now, dt, l, recovery_mode); code != error::kNone) fail(code);
   }
   const double seconds = std::chrono::duration<double>(dt).count();
@@ -62,6 +63,7 @@ void Robot::State::advance(Time dt) noexcept {
     joint_acceleration[i] = (velocity - joint_velocity[i]) / seconds;
     joint_velocity[i] = velocity;
   }
+  watch_zones(dt);
   watch_torques();
   advance_tool(seconds);
   if (motion.moving()) slots.measured_changed();
@@ -85,6 +87,7 @@ void Robot::State::start_up() noexcept {
   started_at = now;
   safety.boot(options.reboot_stop);
   motion.restart();
+  zones.restart();
   tool.restore_defaults();
   slots = DynamicSlots(options.layout);
   error = error::kNone;
@@ -104,22 +107,29 @@ void Robot::State::advance_tool(double seconds) noexcept {
   }
 }
 
+void Robot::State::watch_zones(Time dt) noexcept {
+  if (!power.ready() || !Zones::watching(configuration)) return;
+  const bool collision = zones.collision_watch().event(), work_zone = zones.work_zone_watch().event();
+  fail(zones.watch(configuration, motion.rest_ahead(dt, recovery_mode)));
+  if (collision != zones.collision_watch().event()) slots.changed(37);
+  if (work_zone != zones.work_zone_watch().event()) slots.changed(38);
+}
+
 // inferred: the limits hold while the motors are on, but only motion that is not paused already is stopped. So an error
 // can be reset while something still leans on the arm; without the cause gone or the limits raised, it comes back with
 // ResumeMotion.
 void Robot::State::watch_torques() noexcept {
   const Settings& s = motion.settings();
-  excessive_torque =
-      s.torque_severity != 0 && power.ready() && excessive(torques(measured()), s, motion.accelerating());
+  excessive_torque = s.torque_severity != severity::kSilent && power.ready() &&
+                     excessive(torques(measured()), s, motion.accelerating());
   if (!excessive_torque || paused) return;
-  constexpr int kPause = 2, kError = 4;
-  if (s.torque_severity == kPause) paused = true;
-  if (s.torque_severity == kError) fail(error::kTorqueLimit);
+  if (s.torque_severity == severity::kPause) paused = true;
+  if (s.torque_severity == severity::kError) fail(error::kTorqueLimit);
 }
 
 DynamicSource Robot::State::measured() const noexcept {
-  return {options,        motion.settings(),  limits, variables,         tool, motion.joints(),
-          joint_velocity, joint_acceleration, push,   power.activated(), cycle};
+  return {options,         motion.settings(), configuration,      zones, variables,         tool,
+          motion.joints(), joint_velocity,    joint_acceleration, push,  power.activated(), cycle};
 }
 
 void Robot::State::report() noexcept {
@@ -131,6 +141,8 @@ void Robot::State::report() noexcept {
   r.brakes_engaged = !power.activated() && !brakes_released_by_hand;
   r.recovery_mode = recovery_mode;
   r.monitoring_mode = monitoring && options.layout == image::Layout::kFirmware11;
+  r.collision_status = zones.collision_watch().event();
+  r.work_zone_status = zones.work_zone_watch().event();
   r.error_code = error;
 
   image::MotionStatus& m = inputs.motion_status;

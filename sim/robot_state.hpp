@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/boot.hpp"
+#include "sim/configuration.hpp"
 #include "sim/dynamic_data.hpp"
 #include "sim/dynamic_values.hpp"
 #include "sim/motion.hpp"
@@ -12,8 +13,8 @@
 #include "sim/robot.hpp"
 #include "sim/safety.hpp"
 #include "sim/tool.hpp"
-#include "sim/user_limits.hpp"
 #include "sim/variables.hpp"
+#include "sim/zones.hpp"
 
 namespace meca::sim {
 
@@ -39,7 +40,8 @@ struct Robot::State {
   Boot boot;
   Power power;
   Safety safety;
-  UserLimits limits;
+  Configuration configuration;  // survives deactivation and a reboot
+  Zones zones;
   Variables variables;
   DynamicSlots slots;
   Joints push{};  // % of each motor's torque
@@ -69,6 +71,7 @@ struct Robot::State {
   void violation(std::string_view what) noexcept { violations.add({now, what}); }
 
   void advance_tool(double seconds) noexcept;
+  void watch_zones(Time dt) noexcept;
   void watch_torques() noexcept;
   DynamicSource measured() const noexcept;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/severity.hpp"
 #include "sim/skeleton.hpp"
 
 namespace meca::sim {
@@ -56,7 +57,8 @@ Joints calculated_torques(const Joints& q, const Joints& acceleration, const std
 
 bool excessive(const Torques& t, const Settings& settings, bool accelerating) noexcept {
   constexpr int kSkipAcceleration = 1, kDeviation = 2;
-  if (settings.torque_severity == 0 || (settings.torque_mode == kSkipAcceleration && accelerating)) return false;
+  if (settings.torque_severity == severity::kSilent || (settings.torque_mode == kSkipAcceleration && accelerating))
+    return false;
   for (std::size_t i = 0; i < 6; ++i) {
     const double measured = settings.torque_mode == kDeviation ? t.actual[i] - t.calculated[i] : t.actual[i];
     if (std::abs(measured) > settings.torque_limits[i]) return true;

@@ -78,16 +78,33 @@ Joints VelocityMode::wanted(const Settings& settings, const Dynamics& d, const J
   return out;
 }
 
+// deg/s^2: full speed in one ramp.
+Joints VelocityMode::slope(const Dynamics& d) const noexcept {
+  const double ramp = command_.id == image::kMoveJointsVel ? d.joint_ramp : d.cartesian_ramp;
+  Joints out;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = kTopSpeed[i] / ramp;
+  return out;
+}
+
+Joints VelocityMode::rest_ahead(double seconds, const Settings& settings, bool recovery_mode,
+                                const Joints& joints) const noexcept {
+  const Joints slope = this->slope(dynamics(settings, recovery_mode));
+  double to_rest = 0;
+  for (std::size_t i = 0; i < 6; ++i) to_rest = std::max(to_rest, std::abs(velocity_[i]) / slope[i]);
+  // One step more than asked for: the next one may be faster than this one.
+  const double way = to_rest / 2 + 2 * seconds;
+  Joints out;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = joints[i] + velocity_[i] * way;
+  return out;
+}
+
 void VelocityMode::step(double seconds, const Settings& settings, const JointLimits& limits, bool recovery_mode,
                         Joints& joints) noexcept {
   if (!active_ || seconds <= 0) return;
   age_ += seconds;
   if (age_ > settings.velocity_timeout + 1e-9) cancelled_ = true;
   const Dynamics d = dynamics(settings, recovery_mode);
-  const double ramp = command_.id == image::kMoveJointsVel ? d.joint_ramp : d.cartesian_ramp;
-  Joints slope;  // deg/s^2: full speed in one ramp
-  for (std::size_t i = 0; i < 6; ++i) slope[i] = kTopSpeed[i] / ramp;
-
+  const Joints slope = this->slope(d);
   const Joints before = velocity_;
   const Joints target = wanted(settings, d, joints);
   double k = 1;

@@ -20,6 +20,9 @@ class VelocityMode {
   void step(double seconds, const Settings& settings, const JointLimits& limits, bool recovery_mode,
             Joints& joints) noexcept;
 
+  // Where the arm comes to rest if it is cancelled after one more step.
+  Joints rest_ahead(double seconds, const Settings& settings, bool recovery_mode, const Joints& joints) const noexcept;
+
   bool active() const noexcept { return active_; }
   bool moving() const noexcept { return moving_; }
   bool accelerating() const noexcept { return accelerating_; }  // speeding up, slowing down or turning
@@ -30,6 +33,7 @@ class VelocityMode {
   double age_ = 0;     // s since the last command
   Joints velocity_{};  // deg/s, now
 
+  Joints slope(const Dynamics& d) const noexcept;
   Joints wanted(const Settings& settings, const Dynamics& d, const Joints& q) const noexcept;
 };
 
