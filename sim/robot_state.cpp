@@ -109,10 +109,16 @@ void Robot::State::advance_tool(double seconds) noexcept {
 
 void Robot::State::watch_zones(Time dt) noexcept {
   if (!power.ready() || !Zones::watching(configuration)) return;
-  const bool collision = zones.collision_watch().event(), work_zone = zones.work_zone_watch().event();
   fail(zones.watch(configuration, motion.rest_ahead(dt, recovery_mode)));
-  if (collision != zones.collision_watch().event()) slots.changed(37);
-  if (work_zone != zones.work_zone_watch().event()) slots.changed(38);
+}
+
+void Robot::State::report_zones() noexcept {
+  const bool collision = zones.collision_watch().event(), work_zone = zones.work_zone_watch().event();
+  image::RobotStatus& r = inputs.robot_status;
+  if (r.collision_status != collision) slots.changed(37);
+  if (r.work_zone_status != work_zone) slots.changed(38);
+  r.collision_status = collision;
+  r.work_zone_status = work_zone;
 }
 
 // inferred: the limits hold while the motors are on, but only motion that is not paused already is stopped. So an error
@@ -141,8 +147,7 @@ void Robot::State::report() noexcept {
   r.brakes_engaged = !power.activated() && !brakes_released_by_hand;
   r.recovery_mode = recovery_mode;
   r.monitoring_mode = monitoring && options.layout == image::Layout::kFirmware11;
-  r.collision_status = zones.collision_watch().event();
-  r.work_zone_status = zones.work_zone_watch().event();
+  report_zones();
   r.error_code = error;
 
   image::MotionStatus& m = inputs.motion_status;

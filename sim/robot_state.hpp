@@ -76,6 +76,7 @@ struct Robot::State {
   DynamicSource measured() const noexcept;
 
   void report() noexcept;
+  void report_zones() noexcept;
   void report_pose() noexcept;
   void report_dynamic_data() noexcept;
 

@@ -13,6 +13,9 @@ constexpr double kJointRampAt100 = 0.1;
 // Not published; inferred to be like the joints'.
 constexpr double kCartesianRampAt100 = 0.1;
 
+// What SetCartLinVel and SetCartAngVel take at most (spec 6.2).
+constexpr double kTopLinearSpeed = 5000, kTopAngularSpeed = 1000;
+
 PoseNumbers six(const Command& c) noexcept {
   PoseNumbers out;
   std::copy(c.arguments.begin(), c.arguments.end(), out.begin());
@@ -153,13 +156,15 @@ Dynamics dynamics(const Settings& s, bool recovery_mode) noexcept {
     out.speed_limit[i] = kTopSpeed[i] * limit / 100;
   }
   out.joint_ramp = kJointRampAt100 * 100 / capped(s.joint_acceleration, 40);
+  out.linear_limit = capped(kTopLinearSpeed, 20);
+  out.angular_limit = capped(kTopAngularSpeed, 30);
   out.linear_speed = capped(s.linear_velocity, 20);
   out.angular_speed = capped(s.angular_velocity, 30);
   if (s.move_mode == 1) {
     // Time-based moves take the time they are given; inferred: what bounds them is what the robot can do at most.
     out.joint_speed = out.speed_limit;
-    out.linear_speed = capped(5000, 20);
-    out.angular_speed = capped(1000, 30);
+    out.linear_speed = out.linear_limit;
+    out.angular_speed = out.angular_limit;
   }
   out.cartesian_ramp = kCartesianRampAt100 * 100 / capped(s.cartesian_acceleration, 40);
   return out;

@@ -46,7 +46,8 @@ struct Dynamics {
   Joints joint_speed;                  // deg/s, for joint moves
   Joints speed_limit;                  // deg/s, never exceeded by any move
   double joint_ramp;                   // s from rest to full speed
-  double linear_speed, angular_speed;  // mm/s, deg/s
+  double linear_speed, angular_speed;  // mm/s, deg/s, for lines
+  double linear_limit, angular_limit;  // mm/s, deg/s, never exceeded by a line or a Cartesian velocity
   double cartesian_ramp;               // s
 };
 // In recovery mode everything is capped: 5 % joint speed, 40 % accelerations, 20 mm/s, 30 deg/s (spec 5.6).

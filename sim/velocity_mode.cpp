@@ -71,7 +71,10 @@ Joints VelocityMode::wanted(const Settings& settings, const Dynamics& d, const J
   for (const float v : command_.arguments) largest = std::max(largest, std::abs(static_cast<double>(v)));
   Twist a{};
   for (std::size_t i = 0; i < 6; ++i) a[i] = command_.arguments[i] * (kEnough / largest);
-  const Vec3 linear = axes * Vec3{a[0], a[1], a[2]}, angular = axes * Vec3{a[3], a[4], a[5]};
+  Vec3 linear = axes * Vec3{a[0], a[1], a[2]}, angular = axes * Vec3{a[3], a[4], a[5]};
+  const double over = std::max({1.0, norm(linear) / d.linear_limit, norm(angular) / d.angular_limit});
+  linear = (1 / over) * linear;
+  angular = (1 / over) * angular;
   const Twist twist{linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
   if (!solve(jacobian(q, settings.trf_transform.p), twist, out)) return {};
   limit_speed(out, d.speed_limit);
