@@ -78,6 +78,10 @@ void Motion::discard_active(Time now) noexcept {
 
 void Motion::clear(Time now) noexcept {
   discard_active(now);
+  // A successor that has hardly begun is left out: the arm comes to rest sooner without it.
+  constexpr double kHardly = 1e-4;
+  const auto& next = active_[1];
+  if (active_count_ == 2 && next.segment.profile().at(next.elapsed).position < kHardly) active_count_ = 1;
   clearing_ = active_count_ > 0;
   for (; !next_.empty(); next_.pop()) discard(now, as_sent(next_.front()));
 }

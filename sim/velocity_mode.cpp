@@ -52,7 +52,7 @@ void VelocityMode::command(const Command& command) noexcept {
 
 void VelocityMode::halt() noexcept {
   active_ = cancelled_ = moving_ = accelerating_ = false;
-  velocity_ = {};
+  velocity_ = change_ = {};
 }
 
 Joints VelocityMode::wanted(const Settings& settings, const Dynamics& d, const Joints& q) const noexcept {
@@ -93,11 +93,13 @@ Joints VelocityMode::rest_ahead(double seconds, const Settings& settings, bool r
                                 const Joints& joints) const noexcept {
   const Joints slope = this->slope(dynamics(settings, recovery_mode));
   double to_rest = 0;
-  for (std::size_t i = 0; i < 6; ++i) to_rest = std::max(to_rest, std::abs(velocity_[i]) / slope[i]);
-  // One step more than asked for: the next one may be faster than this one.
-  const double way = to_rest / 2 + 2 * seconds;
+  Joints next;  // as if it went on to change as it did
+  for (std::size_t i = 0; i < 6; ++i) {
+    next[i] = velocity_[i] + change_[i];
+    to_rest = std::max(to_rest, std::abs(next[i]) / slope[i]);
+  }
   Joints out;
-  for (std::size_t i = 0; i < 6; ++i) out[i] = joints[i] + velocity_[i] * way;
+  for (std::size_t i = 0; i < 6; ++i) out[i] = joints[i] + next[i] * (seconds + to_rest / 2);
   return out;
 }
 
@@ -115,7 +117,10 @@ void VelocityMode::step(double seconds, const Settings& settings, const JointLim
     const double change = std::abs(target[i] - velocity_[i]);
     if (change > slope[i] * seconds) k = std::min(k, slope[i] * seconds / change);
   }
-  for (std::size_t i = 0; i < 6; ++i) velocity_[i] += k * (target[i] - velocity_[i]);
+  for (std::size_t i = 0; i < 6; ++i) {
+    change_[i] = k * (target[i] - velocity_[i]);
+    velocity_[i] += change_[i];
+  }
   brake_before_limits(velocity_, joints, limits, slope, seconds);
 
   if (command_.id != image::kMoveJointsVel && would_stretch(joints, velocity_, seconds)) velocity_ = {};

@@ -32,6 +32,7 @@ class VelocityMode {
   bool active_ = false, cancelled_ = false, moving_ = false, accelerating_ = false;
   double age_ = 0;     // s since the last command
   Joints velocity_{};  // deg/s, now
+  Joints change_{};    // deg/s, in the last step, before limits took some of it
 
   Joints slope(const Dynamics& d) const noexcept;
   Joints wanted(const Settings& settings, const Dynamics& d, const Joints& q) const noexcept;

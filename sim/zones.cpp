@@ -77,7 +77,7 @@ bool Watch::look(const Breach& breach, int level) noexcept {
 
 void Watch::accept() noexcept {
   event_ = false;
-  accepted_ = std::max(last_.depth, 0.0);
+  accepted_ = std::max(last_.depth - kTolerance, 0.0);  // else each time would let pass a little more
 }
 
 std::uint16_t Zones::watch(const Configuration& c, const Joints& rest) noexcept {

@@ -51,10 +51,23 @@ TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
     rig.out.motion_command = {id, arguments};
     steps(5000);
   };
+  const auto configure = [&](std::uint32_t id, std::array<float, 6> arguments) {
+    rig.out.motion_control.set_point = true;
+    ++rig.out.motion_control.move_id;
+    rig.out.motion_command = {id, arguments};
+    steps(1);
+  };
+  configure(image::kSetToolSphere, {0, 0, 20, 10});
+  configure(image::kSetWorkZoneCfg, {4, 3});
+  configure(image::kSetWorkZoneLimits, {-500, -500, -10, 500, 500, 500});
+  configure(image::kSetCollisionCfg, {4});
+  rig.out.motion_control.set_point = false;
+  rig.robot.place_obstacle(0, 300, 300, 10);
   rig.out.robot_control.activate = rig.out.robot_control.home = true;
   steps(7000);
   ASSERT_TRUE(rig.robot.inputs().robot_status.homed);
   rig.out.motion_control.set_point = true;
+  command(image::kSetTorqueLimitsCfg, {1, 2});
   command(image::kMoveJoints, {10, 20, 10, 5, 30, 400});
   command(image::kMoveLinRelWrf, {-10, 5, 5, 3, 2, 1});
   command(image::kMovePose, {150, 50, 250, 0, 90, 0});

@@ -5,6 +5,7 @@
 
 #include "sim/inverse.hpp"
 #include "sim/kinematics.hpp"
+#include "sim/zones.hpp"
 #include "tests/unit/sim/rig.hpp"
 
 namespace meca::sim {
@@ -23,7 +24,9 @@ class WildHost {
     o.motion_control.clear_motion = chance(0.01);
     o.motion_control.resume_motion = chance(0.3);
     o.motion_control.use_variables = chance(0.001);
-    o.motion_command.command_id = chance(0.01) ? static_cast<std::uint32_t>(random_()) : random_() % 61;
+    o.motion_command.command_id = chance(0.01)   ? static_cast<std::uint32_t>(random_())
+                                  : chance(0.05) ? 150 + random_() % 7
+                                                 : random_() % 61;
     for (float& a : o.motion_command.arguments) a = argument();
     if (chance(0.02)) o.motion_command = {image::kStartProgram, {static_cast<float>(1 + random_() % 4)}};
     for (auto& t : o.dynamic_data_configuration.type_ids) t = chance(0.5) ? 0 : random_() % 70;
@@ -81,6 +84,8 @@ TEST(WildHosts, NeverBringTheImageOutOfShape) {
       if (host.chance(0.0001)) rig.robot.press_e_stop();
       if (host.chance(0.01)) rig.robot.release_e_stop();
       if (host.chance(0.01)) rig.robot.press_reset_button();
+      if (host.chance(0.001)) rig.robot.push(1 + i % 6, host.chance(0.5) ? 120 : 0);
+      if (host.chance(0.001)) rig.robot.place_obstacle(150, i % 300 - 150, 250, host.chance(0.5) ? 60 : 0);
       if (host.chance(0.02)) {
         rig.robot.step_without_outputs(5ms);
       } else {
@@ -93,6 +98,62 @@ TEST(WildHosts, NeverBringTheImageOutOfShape) {
     EXPECT_GT(moved, 500u);  // the host was wild, not idle
     EXPECT_GT(rig.robot.journal().size(), 100u);
   }
+}
+
+TEST(Zones, HoldWhateverTheArmIsAskedToDo) {
+  std::mt19937 random(5);
+  const auto within = [&](double reach) { return std::uniform_real_distribution<double>(-reach, reach)(random); };
+  Rig rig;
+  rig.send(image::kSetToolSphere, {10, 0, 40, 25});
+  rig.send(image::kSetWorkZoneCfg, {4, 3});
+  rig.send(image::kSetWorkZoneLimits, {-150, -200, 40, 300, 200, 450});
+  rig.send(image::kSetCollisionCfg, {4});
+  rig.make_ready();
+  rig.robot.place_obstacle(60, -190, 300, 45);
+  rig.send(image::kSetVelTimeout, {0.8});
+  const WorkZone zone{4, WorkZone::Mode::kToolAndLinks, {-150, -200, 40}, {300, 200, 450}};
+  const Capsule obstacle{{60, -190, 300}, {60, -190, 300}, 45};
+  int stopped = 0, undisturbed = 0;
+  double before = 0, deeper = 0, deeper_by_twist = 0;  // mm
+  for (int n = 0; n < 400; ++n) {
+    rig.send(image::kSetJointVel, {20 + std::abs(within(130))});
+    rig.send(image::kSetCartLinVel, {20 + std::abs(within(1000))});
+    switch (n % 4) {
+      case 0:
+        for (int i = 0; i < 3; ++i) {  // these blend
+          rig.send(image::kMoveJoints, {within(170), within(70), within(70), within(160), within(110), within(180)});
+        }
+        break;
+      case 1:
+        rig.send(image::kMoveLinRelWrf, {within(80), within(80), within(80), within(30), within(30), within(30)});
+        break;
+      case 2:
+        rig.send(image::kMoveJointsVel, {within(200), within(100), within(100), within(100), within(100), 0});
+        break;
+      default:
+        rig.send(image::kMoveLinVelTrf, {within(300), within(300), within(300), 0, 0, within(60)});
+        break;
+    }
+    rig.run_until([](const auto& in) { return in.motion_status.eob || in.robot_status.error_code != 0; });
+    bool resting = false;
+    for (int i = 0; i < 3000 && !resting; ++i) resting = rig.step().motion_status.eom;
+    Joints q;
+    for (std::size_t i = 0; i < 6; ++i) q[i] = rig.robot.inputs().target_joint_set.joints[i];
+    const ArmShape arm = arm_shape(q, {{10, 0, 40}, 25});
+    const double depth = std::max({0.0, work_zone_breach(zone, arm).depth, collision(arm, obstacle).depth});
+    double& worst = n % 4 == 3 ? deeper_by_twist : deeper;
+    worst = std::max(worst, depth - before);
+    before = depth;
+    rig.error() == 3041 || rig.error() == 3049 ? ++stopped : ++undisturbed;
+    if (rig.error() == 0) continue;
+    rig.reset_error();
+    rig.resume();
+    ASSERT_EQ(rig.error(), 0);
+  }
+  EXPECT_LT(deeper, 0.05);
+  EXPECT_LT(deeper_by_twist, 5);  // close to a singularity a Cartesian velocity is not steady
+  EXPECT_GT(stopped, 100);
+  EXPECT_GT(undisturbed, 50);
 }
 
 TEST(Lines, NeverMakeAJointJumpAndEndWhereTheyWereSentOrDoNotStart) {

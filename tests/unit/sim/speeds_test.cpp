@@ -224,7 +224,8 @@ TEST_F(Speed, OfALineIsSuchThatNoJointIsFasterThanItMay) {
 
 class AboveAxis1 : public Speed {
  protected:
-  // The wrist 33 mm in front of axis 1, the tool down; back by half as much again, the wrist passes exactly over axis 1.
+  // The wrist 33 mm in front of axis 1, the tool down; back by half as much again, the wrist passes exactly over
+  // axis 1.
   AboveAxis1() { rig.perform(image::kMoveJoints, {0, -40, 40, 0, 90, 0}); }
   void go_over() {
     const double x = rig.robot.inputs().target_end_effector_pose.x;
