@@ -72,7 +72,7 @@ class Robot {
   void raise_error(std::uint16_t code) noexcept;
   // Power fails and comes back at once: the robot is away for `boot_time`, then it is off, not homed, without error
   // (inferred: also without one that ResetError does not clear), its settings at their defaults and MoveID at 0. The
-  // arm stays where it was; what the robot saves (joint limits, variables, programs) is kept.
+  // arm stays where it was; what the robot saves (configuration, variables, programs) is kept.
   void power_cycle() noexcept;
   // Puts a part of this width between the gripper's fingers, which close on it; 0 takes it away. False: no gripper, or
   // its fingers are not open wider than that.
