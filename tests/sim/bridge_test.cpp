@@ -54,6 +54,7 @@ class Client {
                                                                 {.reliability = dds::Reliability::kBestEffort});
     receipts_ = participant_.create_reader<meca500::CommandReceipt>(
         "meca500/CommandReceipt", {.durability = dds::Durability::kTransientLocal, .depth = 256});
+    bridge_ = reader<meca500::BridgeStatus>("BridgeStatus");
     EXPECT_TRUE(
         eventually([&] { return commands_.matched() == 1 && leases_.matched() == 1 && receipts_.matched() == 1; }));
   }
@@ -106,8 +107,17 @@ class Client {
     return states;
   }
 
-  // Sends an action and waits until it is COMPLETED.
+  // Sends an action, once the bridge knows the robot's firmware, and waits until it is COMPLETED.
   void complete(const std::string& robot, meca500::CommandKind kind) {
+    ASSERT_TRUE(eventually([&] {
+      meca500::BridgeStatus status;
+      dds::SampleInfo info;
+      while (bridge_.take(status, info)) {
+        if (info.valid_data && status.firmware_known()) known_.insert(status.robot().to_string());
+      }
+      return known_.count(robot) == 1;
+    })) << "the bridge does not get to know "
+        << robot;
     const auto id = send(robot, kind);
     const auto all = receipts(robot, id);
     ASSERT_FALSE(all.empty());
@@ -122,6 +132,8 @@ class Client {
   dds::Writer<meca500::Command> commands_;
   dds::Writer<meca500::ControlLease> leases_;
   dds::Reader<meca500::CommandReceipt> receipts_;
+  dds::Reader<meca500::BridgeStatus> bridge_;
+  std::set<std::string> known_;
   std::map<std::uint64_t, std::vector<meca500::CommandReceipt>> seen_;
   std::uint64_t last_id_ = 0, last_lease_ = 0;
 };
