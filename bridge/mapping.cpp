@@ -268,6 +268,7 @@ void fill(const control::ControlState& state, meca500::ControlStatus& sample) {
   set_text(sample.last_refusal(), refused ? control::describe(state.last_refusal) : std::string{});
   set_text(sample.last_owner(), state.last_owner);
   set_text(sample.last_loss(), loss_name(state.last_loss));
+  sample.last_renewal_ns(state.last_renewal_unix_ns);
 }
 
 void fill(const CycleRecord& record, const Diagnosis& diagnosis, const StatusFacts& facts,

@@ -203,7 +203,8 @@ Json to_json(const meca500::ControlStatus& s) {
           {"last_refused", s.last_refused().c_str()},
           {"last_refusal", s.last_refusal().c_str()},
           {"last_owner", s.last_owner().c_str()},
-          {"last_loss", s.last_loss().c_str()}};
+          {"last_loss", s.last_loss().c_str()},
+          {"last_renewal_ns", s.last_renewal_ns()}};
 }
 
 Json to_json(const meca500::CommandReceipt& s) {

@@ -38,7 +38,12 @@ void Arbiter::take(const ClientName& client, const ParticipantId& participant, L
   state_.priority = rules_.priority(client);
   state_.since_unix_ns = unix_ns;
   set_policy(asked);
-  owner_life_ = {now, 0};
+  live_on(owner_life_, {now, unix_ns, 0});
+}
+
+void Arbiter::live_on(Life& life, const Life& now) noexcept {
+  life = now;
+  if (&life == &owner_life_) state_.last_renewal_unix_ns = now.renewed_unix_ns;
 }
 
 Arbiter::Life* Arbiter::life_of(const ClientName& client, const ParticipantId& participant) noexcept {
@@ -46,14 +51,15 @@ Arbiter::Life* Arbiter::life_of(const ClientName& client, const ParticipantId& p
   return is_contender(client, participant) ? &contender_->life : nullptr;
 }
 
-void Arbiter::renew(const ClientName& client, const ParticipantId& participant, Time now) noexcept {
-  if (Life* life = life_of(client, participant)) life->renewed = now;
+void Arbiter::renew(const ClientName& client, const ParticipantId& participant, Time now,
+                    std::int64_t unix_ns) noexcept {
+  if (Life* life = life_of(client, participant)) live_on(*life, {now, unix_ns, life->last_renewal});
 }
 
-void Arbiter::renew(const LeaseRenewal& renewal, Time now) noexcept {
+void Arbiter::renew(const LeaseRenewal& renewal, Time now, std::int64_t unix_ns) noexcept {
   Life* life = life_of(renewal.client, renewal.participant);
   if (!life || renewal.sequence_number <= life->last_renewal) return;
-  *life = {now, renewal.sequence_number};
+  live_on(*life, {now, unix_ns, renewal.sequence_number});
 }
 
 void Arbiter::remember_loser(const Loser& loser) noexcept {
@@ -92,7 +98,7 @@ std::optional<Ticket> Arbiter::contend(const CommandRequest& request, const Tick
     takes_over_at_ = now + rules_.take_over_grace;
     state_.contender_takes_over_unix_ns = unix_ns + rules_.take_over_grace.count();
   }
-  contender_ = Contender{request.participant, ticket, request.on_loss, {now, 0}};
+  contender_ = Contender{request.participant, ticket, request.on_loss, {now, unix_ns, 0}};
   state_.contender = request.client;
   state_.contender_priority = rules_.priority(request.client);
   return outranked;
@@ -113,7 +119,7 @@ Ticket Arbiter::succeed(std::int64_t unix_ns) noexcept {
   const ClientName name = state_.contender;
   withdraw();
   take(name, next.participant, next.asked, next.life.renewed, unix_ns);
-  owner_life_ = next.life;  // the wait for control is no sign of life
+  live_on(owner_life_, next.life);  // the wait for control is no sign of life
   return next.ticket;
 }
 

@@ -30,8 +30,9 @@ class Arbiter {
             std::int64_t unix_ns) noexcept;
 
   // Signs of life; those of anybody but the owner and the contender change nothing.
-  void renew(const ClientName& client, const ParticipantId& participant, Time now) noexcept;
-  void renew(const LeaseRenewal& renewal, Time now) noexcept;  // only with a sequence number above the last
+  void renew(const ClientName& client, const ParticipantId& participant, Time now, std::int64_t unix_ns) noexcept;
+  // Only with a sequence number above the last.
+  void renew(const LeaseRenewal& renewal, Time now, std::int64_t unix_ns) noexcept;
   // What the owner asks for; the configuration may know better.
   void set_policy(LossPolicy asked) noexcept { state_.on_loss = rules_.policy(state_.owner, asked); }
 
@@ -66,6 +67,7 @@ class Arbiter {
  private:
   struct Life {
     Time renewed{};
+    std::int64_t renewed_unix_ns = 0;
     std::uint64_t last_renewal = 0;
   };
   struct Contender {
@@ -80,6 +82,7 @@ class Arbiter {
   };
 
   bool is_owner(const ClientName& client, const ParticipantId& participant) const noexcept;
+  void live_on(Life& life, const Life& now) noexcept;
   Life* life_of(const ClientName& client, const ParticipantId& participant) noexcept;
   void remember_loser(const Loser& loser) noexcept;
   const Loser* find_loser(const ClientName& client, const ParticipantId& participant) const noexcept;

@@ -50,12 +50,12 @@ void Controller::step(std::span<const Request> requests, const View& view, LinkF
   if (seeded_) follow_robot(view);
   for (const Request& request : requests) {
     if (const auto* command = std::get_if<CommandRequest>(&request)) {
-      arbiter_.renew(command->client, command->participant, view.now);
+      arbiter_.renew(command->client, command->participant, view.now, view.unix_ns);
       handle(*command, view, link);
     } else if (const auto* velocity = std::get_if<VelocityRequest>(&request)) {
       handle(*velocity, view);
     } else if (const auto* renewal = std::get_if<LeaseRenewal>(&request)) {
-      arbiter_.renew(*renewal, view.now);
+      arbiter_.renew(*renewal, view.now, view.unix_ns);
     } else {
       shut_down(view);
     }
@@ -273,7 +273,9 @@ void Controller::execute(const CommandRequest& request, const Ticket& ticket, co
 void Controller::handle(const VelocityRequest& request, const View& view) noexcept {
   const Claim claim = arbiter_.claim(request.client, request.participant);
   if (claim == Claim::kOwner && !shut_down_) {
-    if (velocity_.accept(request, view.now)) arbiter_.renew(request.client, request.participant, view.now);
+    if (velocity_.accept(request, view.now)) {
+      arbiter_.renew(request.client, request.participant, view.now, view.unix_ns);
+    }
     return;
   }
   // A stream has no receipts; ControlStatus names who was refused. A stream never takes control: after an accident it

@@ -171,6 +171,7 @@ struct ControlState {
     kShutdown,
     kTakenOver
   } last_loss = Loss::kNone;
+  std::int64_t last_renewal_unix_ns = 0;  // of the owner, or of the last one when there is none; no news by itself
 };
 
 }  // namespace meca::control

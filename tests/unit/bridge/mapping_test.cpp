@@ -247,6 +247,7 @@ TEST(Mapping, ControlStatusSaysWhoHasControlAndWhoWasRefused) {
   state.last_loss = control::ControlState::Loss::kLeaseExpired;
   state.contender = std::string_view("supervisor");
   state.contender_priority = 10;
+  state.last_renewal_unix_ns = 88;
   state.contender_takes_over_unix_ns = 77;
   meca500::ControlStatus sample;
   fill(state, sample);
@@ -265,6 +266,7 @@ TEST(Mapping, ControlStatusSaysWhoHasControlAndWhoWasRefused) {
   EXPECT_EQ(sample.contender().to_string(), "supervisor");
   EXPECT_EQ(sample.contender_priority(), 10U);
   EXPECT_EQ(sample.contender_takes_over_ns(), 77);
+  EXPECT_EQ(sample.last_renewal_ns(), 88);
 
   fill(control::ControlState{}, sample);  // a sample used again forgets
   EXPECT_EQ(sample.owner().to_string(), "");

@@ -102,6 +102,7 @@ TEST(OnChange, EveryFieldOfTheControlStateIsCompared) {
   EXPECT_TRUE(differs([](auto& s) { s.last_refusal.command_id = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.last_owner = std::string_view("x"); }));
   EXPECT_TRUE(differs([](auto& s) { s.last_loss = ControlState::Loss::kReleased; }));
+  EXPECT_FALSE(differs([](auto& s) { s.last_renewal_unix_ns = 1; })) << "or every renewal would be published";
 }
 
 TEST(EveryCycle, EveryRecordIsPublished) {

@@ -51,6 +51,25 @@ TEST(Ownership, refuses_everybody_else_and_names_the_owner) {
   EXPECT_EQ(control(b).owner.view(), "cell-plc");
 }
 
+TEST(Ownership, shows_when_the_owner_gave_its_last_sign_of_life_and_still_after_its_end) {
+  Bench b;
+  b.connect();
+  EXPECT_EQ(control(b).last_renewal_unix_ns, 0);
+  b.keep_alive = false;
+  b.outcome(kTakeControl);
+  EXPECT_EQ(control(b).last_renewal_unix_ns, b.unix_ns) << "taking control is one";
+  b.steps(20);
+  b.pending.push_back(LeaseRenewal{b.client, participant(1), 1});
+  b.step();
+  const auto renewed = b.unix_ns;
+  EXPECT_EQ(control(b).last_renewal_unix_ns, renewed);
+  b.pending.push_back(from(b, "joystick", 2, kActivate, 1));
+  b.steps(20);
+  EXPECT_EQ(control(b).last_renewal_unix_ns, renewed) << "nobody else renews it";
+  ASSERT_TRUE(b.until([&] { return !control(b).owned; }));
+  EXPECT_EQ(control(b).last_renewal_unix_ns, renewed);
+}
+
 TEST(Ownership, is_bound_to_the_participant_and_not_to_the_name_alone) {
   Bench b;
   b.connect();
