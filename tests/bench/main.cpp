@@ -5,13 +5,21 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/bench/deaths.hpp"
+#include "tests/bench/fight.hpp"
+#include "tests/bench/fighter.hpp"
+#include "tests/bench/owner.hpp"
 #include "tests/bench/process.hpp"
+#include "tests/bench/proof.hpp"
 #include "tests/bench/raw_dds.hpp"
 #include "tests/bench/readers.hpp"
 #include "tests/bench/scenarios.hpp"
 #include "tests/bench/table.hpp"
+#include "tests/bench/throughput.hpp"
 
 using namespace meca::bench;
+
+constexpr int kBroken = 1, kNotTold = 3;
 
 int main(int argc, char** argv) try {
   Setting setting;
@@ -43,6 +51,32 @@ int main(int argc, char** argv) try {
   scenario("wakeup", "Lateness of the cycle thread", measure_wakeup);
   scenario("stopped-reader", "Missed cycles of four robots with a stopped reliable reader", measure_stopped_reader);
 
+  // Proofs: their exit code says whether the promise held, or that this machine could not tell.
+  std::vector<std::string> broken, not_told;
+  const auto proof = [&](const char* name, const char* about, auto prove) {
+    auto* command = app.add_subcommand(name, about);
+    command->callback([&, name, prove] {
+      setting.duration = std::chrono::seconds(seconds);
+      Proof result = prove();
+      figures[name] = std::move(result.figures);
+      broken.insert(broken.end(), result.broken.begin(), result.broken.end());
+      if (!result.not_told.empty()) not_told.push_back(result.not_told);
+    });
+    return command;
+  };
+  int deaths = 500;
+  proof("deaths", "Owners die: stop image within lease + 2 cycles, and quiet after it",
+        [&] { return prove_deaths(setting, deaths); })
+      ->add_option("--deaths", deaths, "How many")
+      ->check(CLI::Range(3, 100000))
+      ->capture_default_str();
+
+  proof("fight", "Eight clients fight for one robot: one owner at a time, one end of every command",
+        [&] { return prove_fight(setting); });
+
+  proof("throughput", "Queued commands per cycle, beside what the MoveID handshake allows",
+        [&] { return prove_throughput(setting); });
+
   // The other ends of the measurements, started by the scenarios.
   app.add_subcommand("latency-reader", "")->group("")->callback([&] {
     run_latency_reader(setting.domain, std::chrono::seconds(seconds));
@@ -60,13 +94,42 @@ int main(int argc, char** argv) try {
     run_raw_writer(raw);
   });
 
+  OwnerOptions owner;
+  auto* owner_role = app.add_subcommand("owner", "")->group("");
+  owner_role->add_option("--name", owner.name)->required();
+  owner_role->add_option("--board", owner.board)->required();
+  owner_role->add_flag("--velocity", owner.velocity);
+  owner_role->callback([&] {
+    owner.domain = setting.domain;
+    run_owner(owner);
+  });
+
+  FighterOptions fighter;
+  auto* fighter_role = app.add_subcommand("fighter", "")->group("");
+  fighter_role->add_option("--name", fighter.name)->required();
+  fighter_role->add_option("--diary", fighter.diary)->required();
+  fighter_role->add_option("--seed", fighter.seed)->required();
+  fighter_role->callback([&] {
+    fighter.domain = setting.domain;
+    run_fighter(fighter);
+  });
+
+  bool moves = false, report_completion = false;
+  auto* throughput_role = app.add_subcommand("throughput-client", "")->group("");
+  throughput_role->add_flag("--moves", moves);
+  throughput_role->add_flag("--report-completion", report_completion);
+  throughput_role->callback(
+      [&] { run_throughput_client(setting.domain, moves, report_completion, std::chrono::seconds(seconds)); });
+
   CLI11_PARSE(app, argc, argv);
   if (!figures.is_null()) {
     for (const auto& [name, figure] : figures.items()) std::printf("%s", table(name, figure).c_str());
     if (!json_file.empty()) std::ofstream(json_file) << figures.dump(2) << "\n";
   }
-  return 0;
+  for (const auto& sentence : broken) std::fprintf(stderr, "broken: %s\n", sentence.c_str());
+  for (const auto& sentence : not_told) std::fprintf(stderr, "not told: %s\n", sentence.c_str());
+  return !broken.empty() ? kBroken : !not_told.empty() ? kNotTold : 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "meca-bench: %s\n", error.what());
-  return 1;
+  return kBroken;
 }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,6 +24,7 @@ Process::Process(const std::vector<std::string>& command) : name_(command.front(
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork: " + std::string(std::strerror(errno)));
   if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(pipe_ends[1], STDOUT_FILENO);
     execv(argv[0], argv.data());
     _exit(127);
@@ -32,14 +34,11 @@ Process::Process(const std::vector<std::string>& command) : name_(command.front(
 }
 
 Process::~Process() {
-  if (pid_ > 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
+  kill();
   if (output_ >= 0) close(output_);
 }
 
-void Process::signal(int number) const { kill(pid_, number); }
+void Process::signal(int number) const { ::kill(pid_, number); }
 
 bool Process::running() {
   siginfo_t info{};
@@ -72,6 +71,13 @@ std::string Process::finish() {
 void Process::stop() {
   signal(SIGTERM);
   finish();
+}
+
+void Process::kill() {
+  if (pid_ < 0) return;
+  signal(SIGKILL);
+  waitpid(pid_, nullptr, 0);
+  pid_ = -1;
 }
 
 std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }

@@ -9,7 +9,7 @@
 
 namespace meca::bench {
 
-// A child whose standard output we read at its end. Killed when the object goes.
+// A child whose standard output we read at its end. Killed when the object goes, and when this process dies.
 class Process {
  public:
   explicit Process(const std::vector<std::string>& command);  // throws std::runtime_error
@@ -25,6 +25,8 @@ class Process {
   std::string finish();
   // SIGTERM, then wait.
   void stop();
+  // SIGKILL, then wait. Once is enough.
+  void kill();
 
  private:
   std::string name_;

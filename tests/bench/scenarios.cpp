@@ -1,19 +1,19 @@
 #include "tests/bench/scenarios.hpp"
 
 #include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
 #include "bridge/dds.hpp"
 #include "idl/types.hpp"
+#include "tests/bench/bridge_process.hpp"
 #include "tests/bench/clock.hpp"
 #include "tests/bench/process.hpp"
 
@@ -23,30 +23,21 @@ namespace {
 using json = nlohmann::ordered_json;
 using std::chrono::seconds;
 
-std::filesystem::path write_config(const Setting& setting, int robots, bool whole_image) {
-  const auto path = std::filesystem::temp_directory_path() / ("meca-bench-" + std::to_string(getpid()) + ".yaml");
-  std::ofstream out(path);
+std::string configuration(const Setting& setting, int robots, bool whole_image = false) {
+  std::ostringstream out;
   out << "dds:\n  domain: " << setting.domain << "\n";
   if (whole_image) out << "  topics:\n    CyclicState: {rate: every_cycle}\n";
   out << "log: {level: warn}\nrobots:\n";
   for (int i = 0; i < robots; ++i) {
     out << "  - {name: arm" << i << ", cycle: 1ms, transport: {type: builtin}}\n";
   }
-  return path;
+  return out.str();
 }
 
-// A bridge on built-in robots in a process of its own.
-struct BridgeProcess {
-  BridgeProcess(const Setting& setting, int robots, bool whole_image = false)
-      : config(write_config(setting, robots, whole_image)),
-        process({setting.bridge.string(), "--config", config.string()}) {}
-  ~BridgeProcess() { std::filesystem::remove(config); }
-  std::filesystem::path config;
-  Process process;
-};
-
 std::vector<std::string> role(const char* name, const Setting& setting, seconds duration) {
-  return {own_path(), name, "--domain", std::to_string(setting.domain), "--seconds", std::to_string(duration.count())};
+  auto command = role(name, setting);
+  command.insert(command.end(), {"--seconds", std::to_string(duration.count())});
+  return command;
 }
 
 double cpu_share(const Process& process, seconds duration) {
@@ -136,7 +127,7 @@ BareLoop bare_loop(seconds duration) {
 json measure_latency(const Setting& setting) {
   json result;
   {
-    BridgeProcess bridge(setting, 1, true);
+    BridgeProcess bridge(setting, configuration(setting, 1, true));
     Process reader(role("latency-reader", setting, setting.duration));
     result["bridge"] = json::parse(reader.finish());
     bridge.process.stop();
@@ -161,7 +152,7 @@ json measure_cpu(const Setting& setting) {
     json row;
     row["robots"] = robots;
     {
-      BridgeProcess bridge(setting, robots);
+      BridgeProcess bridge(setting, configuration(setting, robots));
       std::this_thread::sleep_for(seconds(3));  // start-up and discovery are not measured
       Process reader(role("counting-reader", setting, setting.duration));
       std::this_thread::sleep_for(seconds(1));
@@ -190,7 +181,7 @@ json measure_cpu(const Setting& setting) {
 json measure_wakeup(const Setting& setting) {
   json result;
   {
-    BridgeProcess bridge(setting, 1);
+    BridgeProcess bridge(setting, configuration(setting, 1));
     StatusWatch watch(setting);
     watch.run(seconds(3));
     watch.run(setting.duration);
@@ -208,7 +199,7 @@ json measure_wakeup(const Setting& setting) {
 
 json measure_stopped_reader(const Setting& setting) {
   json result;
-  BridgeProcess bridge(setting, 4);
+  BridgeProcess bridge(setting, configuration(setting, 4));
   StatusWatch watch(setting);
   watch.run(seconds(3));
   const auto phase = [&](const char* name) {
