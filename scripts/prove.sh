@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # ./meca prove [WORD] [options]: the long proofs of what is promised about control, each by one word; without a word, all.
-# ./meca test runs the same tests in a shorter form. Figures are printed; the exit code says whether the promise held.
+# ./meca test runs the same tests in a shorter form. Figures are printed; the exit code says whether the promise held
+# (0), was broken (1), or could not be judged because the machine was too busy (3). Options go to meca-bench: deaths
+# --deaths N (500), fight --seconds N (120), throughput --seconds N (10).
 . scripts/common.sh
 which=${1:-all}
 [ $# -gt 0 ] && shift
