@@ -52,8 +52,7 @@ std::optional<StopFacts> judge_stop(const WireImages& images, std::int64_t renew
     facts.broken.push_back("stopped " + ms(waited) + " after a sign of life, before the lease was over");
   }
   if (!velocity || !renewed->second.moves_by_velocity()) return facts;
-  const auto zero =
-      first(images, renewed, [](const WireImage& i) { return !i.moves_by_velocity() && !i.set_point; });
+  const auto zero = first(images, renewed, [](const WireImage& i) { return !i.moves_by_velocity() && !i.set_point; });
   facts.velocity_cycles = static_cast<std::int64_t>(zero->first + 1 - renewed->first);
   const auto most_velocity = limits.most_cycles(limits.velocity_lease_ns);
   if (*facts.velocity_cycles > most_velocity) {
@@ -63,15 +62,16 @@ std::optional<StopFacts> judge_stop(const WireImages& images, std::int64_t renew
   return facts;
 }
 
-std::vector<std::string> judge_quiet(const WireImages& images, std::uint64_t stop_cycle, std::uint64_t resumed,
-                                     std::uint64_t commanded) {
+std::optional<std::vector<std::string>> judge_quiet(const WireImages& images, std::uint64_t stop_cycle,
+                                                    std::uint64_t resumed, std::uint64_t commanded) {
   std::vector<std::string> broken;
   const auto say = [&](std::uint64_t cycle, const char* what) {
     broken.push_back(std::string(what) + ", " + std::to_string(cycle - stop_cycle) + " cycles after the stop image");
   };
-  for (auto at = images.lower_bound(stop_cycle); at != images.end() && at->first < commanded && broken.empty(); ++at) {
-    const auto& [cycle, image] = *at;
-    if (!image.complete()) continue;
+  for (std::uint64_t cycle = stop_cycle; cycle < commanded && broken.empty(); ++cycle) {
+    const auto at = images.find(cycle);
+    if (at == images.end() || !at->second.complete()) return std::nullopt;
+    const WireImage& image = at->second;
     if (image.set_point) say(cycle, "SetPoint before the next owner's first command");
     if (image.moves_by_velocity()) say(cycle, "a velocity before the next owner's first command");
     if (cycle >= resumed) continue;

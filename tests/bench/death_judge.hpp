@@ -17,9 +17,9 @@ struct DeathLimits {
 };
 
 struct StopFacts {
-  std::uint64_t stop_cycle = 0;      // its step computed the first stop image; the next cycle sends it
-  std::int64_t cycles = 0;           // from the last sign of life to the wire
-  std::int64_t on_wire_ns = 0;       // Unix: stamp of the cycle that sends it
+  std::uint64_t stop_cycle = 0;                 // its step computed the first stop image; the next cycle sends it
+  std::int64_t cycles = 0;                      // from the last sign of life to the wire
+  std::int64_t on_wire_ns = 0;                  // Unix: stamp of the cycle that sends it
   std::optional<std::int64_t> velocity_cycles;  // the same for the end of a velocity stream
   std::vector<std::string> broken;
 };
@@ -30,8 +30,8 @@ std::optional<StopFacts> judge_stop(const WireImages& images, std::int64_t renew
                                     const DeathLimits& limits);
 
 // From the stop image until the next owner is let: Pause stands and no Resume before `resumed`, SetPoint stays 0 (so no
-// MoveID means anything) before `commanded`. Cycles of the bridge.
-std::vector<std::string> judge_quiet(const WireImages& images, std::uint64_t stop_cycle, std::uint64_t resumed,
-                                     std::uint64_t commanded);
+// MoveID means anything) before `commanded`. Cycles of the bridge. Nothing when there is a hole.
+std::optional<std::vector<std::string>> judge_quiet(const WireImages& images, std::uint64_t stop_cycle,
+                                                    std::uint64_t resumed, std::uint64_t commanded);
 
 }  // namespace meca::bench

@@ -27,10 +27,12 @@ std::string fighter_name(int number) { return "fighter-" + std::to_string(number
 int priority(int number) { return number < kFighters - 2 ? 0 : 10 * (number - kFighters + 3); }
 
 std::string configuration(const Setting& setting) {
-  std::string text = dds_on_loopback(setting.domain) + "  topics:\n"
+  std::string text = dds_on_loopback(setting.domain) +
+                     "  topics:\n"
                      "    ControlStatus: {depth: 1000}\n"
                      "log: {level: error}\nrobots:\n  - name: " +
-                     kRobot + "\n    transport: {type: builtin, instant_homing: true}\n"
+                     kRobot +
+                     "\n    transport: {type: builtin, instant_homing: true}\n"
                      "    control:\n      take_over_grace: 30ms\n      clients:\n";
   for (int i = 0; i < kFighters; ++i) {
     if (priority(i) == 0) continue;
@@ -110,8 +112,8 @@ class Arena {
     meca500::CommandReceipt r;
     while (receipts_.take(r, info)) {
       if (!info.valid_data || !fights(r.client())) continue;
-      fight_.receipts.push_back({r.client().to_string(), r.command_id(), r.state(), r.reason(), r.text().to_string(), r.cycle(),
-                                 r.time_ns()});
+      fight_.receipts.push_back({r.client().to_string(), r.command_id(), r.state(), r.reason(), r.text().to_string(),
+                                 r.cycle(), r.time_ns()});
     }
     while (status_.take(bridge_status_, info)) {
     }

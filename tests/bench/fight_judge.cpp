@@ -66,9 +66,10 @@ class Judge {
 
   void find_reigns() {
     for (const auto& [since, owner] : fight_.owners) {
-      const auto first = std::ranges::find_if(fight_.receipts, [&, since = since, &owner = owner](const ReceiptLine& r) {
-        return r.time_ns == since && r.client == owner && r.state != ReceiptState::REJECTED;
-      });
+      const auto first =
+          std::ranges::find_if(fight_.receipts, [&, since = since, &owner = owner](const ReceiptLine& r) {
+            return r.time_ns == since && r.client == owner && r.state != ReceiptState::REJECTED;
+          });
       if (first == fight_.receipts.end()) {
         say(owner + " has control since " + std::to_string(since) + " ns without a command accepted then");
         continue;
@@ -123,7 +124,8 @@ class Judge {
     }
     if (ends == 0) say(name_of(*receipts.front()) + " has receipts and no end");
     for (const auto& [state, count] : times) {
-      if (count > 1 + resends) say(name_of(*receipts.front()) + ": the same receipt " + std::to_string(count) + " times");
+      if (count > 1 + resends)
+        say(name_of(*receipts.front()) + ": the same receipt " + std::to_string(count) + " times");
     }
   }
 
@@ -138,7 +140,8 @@ class Judge {
     const bool named = std::ranges::any_of(
         owners, [&](const std::string& owner) { return r.text.find("'" + owner + "'") != std::string::npos; });
     facts_.named_owner += named && !nobody;
-    if (fight_.owners_known && !nobody && !named) say(name_of(r) + " was rejected as not of the owner, who is not named: " + r.text);
+    if (fight_.owners_known && !nobody && !named)
+      say(name_of(r) + " was rejected as not of the owner, who is not named: " + r.text);
   }
 
   void judge_view(const std::string& client, std::uint64_t id, const Sent& sent, const Receipts* published) {

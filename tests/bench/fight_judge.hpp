@@ -24,7 +24,7 @@ struct Fight {
   std::vector<ReceiptLine> receipts;  // in order for each client
   // From ControlStatus: who had control, by since_ns, which is the stamp of the cycle that gave it.
   std::map<std::int64_t, std::string> owners;
-  bool owners_known = true;  // false: some may be missing; what needs them all is not judged
+  bool owners_known = true;              // false: some may be missing; what needs them all is not judged
   std::map<std::string, Diary> diaries;  // by client name
 };
 

@@ -181,7 +181,8 @@ Diary read_diary(const std::filesystem::path& path) {
     } else if (word == "again" && in >> id) {
       ++diary.commands[id].resends;
     } else if (word == "seen" && in >> id >> number >> reason) {
-      diary.commands[id].seen.push_back({static_cast<ReceiptState>(number), static_cast<meca500::ReceiptReason>(reason)});
+      diary.commands[id].seen.push_back(
+          {static_cast<ReceiptState>(number), static_cast<meca500::ReceiptReason>(reason)});
     }
   }
   return diary;

@@ -1,5 +1,5 @@
-// One of those who fight for a robot: takes control, commands, resends, falls silent, releases and dies, at random. What
-// it does and sees goes line by line into a file that outlives it.
+// One of those who fight for a robot: takes control, commands, resends, falls silent, releases and dies, at random.
+// What it does and sees goes line by line into a file that outlives it.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct Seen {
 struct Sent {
   meca500::CommandKind kind{};
   int resends = 0;
-  bool lived = false;  // its sender lived on until it had waited for every answer
+  bool lived = false;      // its sender lived on until it had waited for every answer
   std::vector<Seen> seen;  // by the sender, in order
 };
 struct Diary {

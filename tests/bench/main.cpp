@@ -1,5 +1,5 @@
-// meca-bench: speed as ratios, measured in one run beside raw Fast DDS and bare system calls; and promises about control,
-// put to the proof with real processes.
+// meca-bench: speed as ratios, measured in one run beside raw Fast DDS and bare system calls; and promises about
+// control, put to the proof with real processes.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -36,7 +36,9 @@ int main(int argc, char** argv) try {
       "Read the ratios: absolute figures belong to this machine and this moment."};
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--seconds", seconds, "Length of each measurement; of a fight, two minutes unless given")->check(CLI::Range(3, 600))->capture_default_str();
+  app.add_option("--seconds", seconds, "Length of each measurement; of a fight, two minutes unless given")
+      ->check(CLI::Range(3, 600))
+      ->capture_default_str();
   app.add_option("--domain", setting.domain, "DDS domain")->capture_default_str();
   app.add_option("--json", json_file, "Also write the figures to this file");
 
@@ -73,11 +75,10 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(3, 100000))
       ->capture_default_str();
 
-  proof("fight", "Eight clients fight for one robot: one owner at a time, one end of every command",
-        [&] {
-          if (app.count("--seconds") == 0) setting.duration = std::chrono::minutes(2);
-          return prove_fight(setting);
-        });
+  proof("fight", "Eight clients fight for one robot: one owner at a time, one end of every command", [&] {
+    if (app.count("--seconds") == 0) setting.duration = std::chrono::minutes(2);
+    return prove_fight(setting);
+  });
 
   proof("throughput", "Queued commands per cycle, beside what the MoveID handshake allows",
         [&] { return prove_throughput(setting); });

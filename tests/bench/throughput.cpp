@@ -1,7 +1,7 @@
 #include "tests/bench/throughput.hpp"
 
-#include <cstdio>
 #include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 
 #include "tests/bench/bridge_process.hpp"
@@ -28,8 +28,9 @@ class Sender {
   Sender(int domain, bool moves, bool report_completion)
       : client_(domain, "bench-throughput"),
         status_(client_.participant().create_reader<meca500::BridgeStatus>("meca500/BridgeStatus", {})),
-        command_(moves ? Client::make_motion(meca500::MotionCommandId::MOVE_JOINTS, {0, 0, 0, 0, 0, 0}, report_completion)
-                       : Client::make_motion(meca500::MotionCommandId::SET_JOINT_VEL, {50}, report_completion)) {}
+        command_(moves
+                     ? Client::make_motion(meca500::MotionCommandId::MOVE_JOINTS, {0, 0, 0, 0, 0, 0}, report_completion)
+                     : Client::make_motion(meca500::MotionCommandId::SET_JOINT_VEL, {50}, report_completion)) {}
 
   json run(std::chrono::seconds duration) {
     prepare();
@@ -46,8 +47,8 @@ class Sender {
     const auto cycles = last_taken_.cycle - first_taken_.cycle;
     return {{"commands", commands},
             {"cycles", cycles},
-            {"commands_per_second", 1e9 * static_cast<double>(commands) /
-                                        static_cast<double>(last_taken_.time_ns - first_taken_.time_ns)},
+            {"commands_per_second",
+             1e9 * static_cast<double>(commands) / static_cast<double>(last_taken_.time_ns - first_taken_.time_ns)},
             {"refused", refused_},
             {"missed_cycles", missed()}};
   }

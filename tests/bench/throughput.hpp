@@ -1,9 +1,9 @@
 // The promise that queued motion goes as fast as the robot's handshake allows.
 //
 // The bound, in cycles of the bridge: a step sees the echo of a MoveID and puts the next command into the same cycle's
-// image; the built-in robot takes that image and echoes it in the exchange that opens the next cycle. So a command costs
-// one cycle, and one with report_completion two, because the bridge queues a checkpoint of its own behind it. A cycle
-// that the machine kept the bridge from running has no number and is not counted.
+// image; the built-in robot takes that image and echoes it in the exchange that opens the next cycle. So a command
+// costs one cycle, and one with report_completion two, because the bridge queues a checkpoint of its own behind it. A
+// cycle that the machine kept the bridge from running has no number and is not counted.
 //
 // Measured: from the first to the last SENT receipt, commands against cycles.
 #pragma once

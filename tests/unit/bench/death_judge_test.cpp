@@ -16,7 +16,9 @@ using testing::IsEmpty;
 constexpr std::uint64_t kRenewed = 1000;  // the cycle that took the last sign of life
 constexpr DeathLimits kLimits;            // 1 ms, lease 100 ms, velocity lease 50 ms
 
-std::int64_t stamp(std::uint64_t cycle) { return 1'800'000'000'000'000'000 + static_cast<std::int64_t>(cycle) * 1'000'000; }
+std::int64_t stamp(std::uint64_t cycle) {
+  return 1'800'000'000'000'000'000 + static_cast<std::int64_t>(cycle) * 1'000'000;
+}
 
 // Queued motion until the cycle before `stop`, then the stop image.
 WireImages images(std::uint64_t stop) {
@@ -98,7 +100,7 @@ TEST(DeathJudge, WantsQuietUntilTheNextOwnerIsLet) {
     WireImages all = images(stop);
     for (auto& [at, image] : all) image.pause = at >= stop && at < resumed;
     change(all[cycle]);
-    return judge_quiet(all, stop, resumed, commanded);
+    return judge_quiet(all, stop, resumed, commanded).value_or(std::vector<std::string>{"not measured"});
   };
   const auto nothing = [](WireImage&) {};
   const auto set_point = [](WireImage& i) { i.set_point = true; };
@@ -110,6 +112,7 @@ TEST(DeathJudge, WantsQuietUntilTheNextOwnerIsLet) {
   EXPECT_THAT(broken(resumed, resume), IsEmpty());
   EXPECT_THAT(broken(resumed - 1, resume), ElementsAre(HasSubstr("Resume")));
   EXPECT_THAT(broken(resumed - 1, unpause), ElementsAre(HasSubstr("Pause")));
+  EXPECT_THAT(broken(resumed - 1, [](WireImage& i) { i.has_command = false; }), ElementsAre("not measured"));
 }
 
 }  // namespace
