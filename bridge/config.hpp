@@ -31,7 +31,7 @@ struct DdsConfig {
   std::string participant_name = "meca-bridge";
   std::string topic_prefix = "meca500/";
   std::vector<std::string> interfaces;  // IPv4 addresses; empty = all
-  bool shared_memory = true;
+  bool shared_memory = false;
   std::map<std::string, TopicConfig> topics;  // every published topic by its name without prefix, defaults filled in
 };
 

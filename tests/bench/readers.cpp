@@ -18,6 +18,7 @@ constexpr dds::Qos kReliableDeep{dds::Reliability::kReliable, dds::Durability::k
 
 dds::ParticipantOptions participant(int domain) {
   dds::ParticipantOptions options;
+  options.shared_memory = false;  // as the bridge by default; then the raw writer beside it is read over UDP too
   options.domain = domain;
   options.name = "bench-reader";
   return options;

@@ -180,7 +180,7 @@ dds:
   participant_name: "Halle 3: Zelle 7"
   topic_prefix: hall3/cell7/
   interfaces: [192.168.0.10, 127.0.0.1]
-  shared_memory: false
+  shared_memory: true
   topics:
     RobotStatus: {rate: every_cycle, reliability: best_effort, durability: volatile, depth: 7}
     MotionStatus: {rate: 250Hz}
@@ -215,7 +215,7 @@ robots:
   EXPECT_EQ(c.dds.participant_name, "Halle 3: Zelle 7");
   EXPECT_EQ(c.dds.topic_prefix, "hall3/cell7/");
   EXPECT_EQ(c.dds.interfaces, (std::vector<std::string>{"192.168.0.10", "127.0.0.1"}));
-  EXPECT_FALSE(c.dds.shared_memory);
+  EXPECT_TRUE(c.dds.shared_memory);
   EXPECT_EQ(to_string(c.dds.topics.at("RobotStatus")), "every cycle, best_effort, volatile, depth 7");
   EXPECT_EQ(to_string(c.dds.topics.at("MotionStatus")), "every 4ms, reliable, transient_local, depth 1");
   EXPECT_EQ(to_string(c.dds.topics.at("CyclicState")), "every cycle, reliable, transient_local, depth 1");
