@@ -40,23 +40,6 @@ struct Unit {
 };
 constexpr std::array kUnits{Unit{"s", 1e9}, Unit{"ms", 1e6}, Unit{"us", 1e3}, Unit{"ns", 1}};
 
-// Distance with swaps of neighbours counted as one slip (optimal string alignment), blind to case.
-std::size_t distance(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; };
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same ? 0 : 1)});
-      const bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
-      if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
 // Each label between dots passes `label`, the whole is at most `longest` bytes.
 template <typename Label>
 bool labels(std::string_view text, std::size_t longest, Label label) {
@@ -140,20 +123,6 @@ bool is_interface_name(std::string_view text) {
 
 bool is_station_name(std::string_view text) {
   return !is_ipv4(text) && labels(text, 240, [](char c) { return is_digit(c) || is_lower(c) || c == '-'; });
-}
-
-std::string_view nearest(std::string_view text, std::span<const std::string_view> candidates) {
-  if (text.size() > 64) return {};  // nobody mistypes that; keeps the table small
-  std::string_view best;
-  std::size_t best_distance = std::max<std::size_t>(1, text.size() / 3) + 1;
-  for (const std::string_view candidate : candidates) {
-    const std::size_t d = distance(text, candidate);
-    if (d < best_distance && d < candidate.size()) {
-      best = candidate;
-      best_distance = d;
-    }
-  }
-  return best;
 }
 
 }  // namespace meca::bridge::config_values

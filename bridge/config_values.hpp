@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
 #include "bridge/config.hpp"
+#include "transports/image/nearest.hpp"
 
 namespace meca::bridge::config_values {
 
@@ -31,7 +31,6 @@ bool is_interface_name(std::string_view text);  // 1..15 bytes, no '/' and no sp
 // PROFINET NameOfStation: labels of a-z 0-9 - joined by dots, 1..240 bytes, a label 1..63; not an IP address.
 bool is_station_name(std::string_view text);
 
-// The candidate most like `text`, or empty when none is near enough to be what was meant.
-std::string_view nearest(std::string_view text, std::span<const std::string_view> candidates);
+using image::nearest;
 
 }  // namespace meca::bridge::config_values

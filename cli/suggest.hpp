@@ -1,16 +1,12 @@
 // "Did you mean ...?": the known word nearest to a mistyped one.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace meca::cli {
-
-// Edits (insert, delete, replace, swap neighbours) between two words, without regard to case.
-std::size_t edit_distance(std::string_view a, std::string_view b);
 
 // Empty when nothing is near enough to be meant: more than a third of the letters would have to change.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string> known);

@@ -4,8 +4,12 @@
 
 #include <vector>
 
+#include "transports/image/nearest.hpp"
+
 namespace meca::cli {
 namespace {
+
+using image::edit_distance;
 
 const std::vector<std::string> kWords{"activate", "deactivate", "home", "move-joints", "move-lin"};
 
