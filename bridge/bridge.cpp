@@ -14,6 +14,7 @@
 #include "bridge/realtime.hpp"
 #include "sim/robot.hpp"
 #include "transports/builtin/builtin.hpp"
+#include "transports/panel/control_panel.hpp"
 
 namespace meca::bridge {
 namespace {
@@ -64,14 +65,32 @@ CycleSettings settings_of(const RobotConfig& robot, std::endian byte_order) {
 
 Time monotonic() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
+// Without it the robot works all the same; only its buttons cannot be pressed.
+std::unique_ptr<transports::ControlPanel> open_panel(const RobotConfig& robot, const DdsConfig& dds) {
+  const std::string& socket = robot.builtin.control_socket;
+  if (socket == "off") return nullptr;
+  try {
+    std::filesystem::path path = socket;
+    if (socket == "auto") path = transports::default_control_socket(dds.domain, dds.topic_prefix, robot.name);
+    auto panel = std::make_unique<transports::ControlPanel>(std::move(path));
+    spdlog::info("{}: buttons at {}; 'meca-ctl sim help' lists them", robot.name, panel->socket().string());
+    return panel;
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("{}: no control socket, its buttons cannot be pressed: {}", robot.name, error.what());
+    return nullptr;
+  }
+}
+
 // Every robot has a bus of its own here: no network joins built-in robots.
-LoopBus open_bus(const RobotConfig& robot, RobotChannel& channel) {
+LoopBus open_bus(const RobotConfig& robot, const DdsConfig& dds, RobotChannel& channel) {
   if (robot.type != TransportType::kBuiltin) {
     throw std::runtime_error(robot.name + ": transport type '" + std::string(to_string(robot.type)) +
                              "' is not built yet; this version has 'builtin'");
   }
   LoopBus bus;
-  bus.transport = transports::make_builtin({model_of(robot)});
+  std::vector<std::unique_ptr<transports::ControlPanel>> panels;
+  panels.push_back(open_panel(robot, dds));
+  bus.transport = transports::make_builtin({model_of(robot)}, std::move(panels));
   bus.transport->open(monotonic());
   bus.robots.push_back({settings_of(robot, bus.transport->byte_order()), &channel});
   return bus;
@@ -139,7 +158,7 @@ Bridge::Impl::Impl(const Config& config)
 void Bridge::Impl::make_loops(const Config& config) {
   std::map<Time, std::vector<LoopBus>> groups;
   for (std::size_t i = 0; i < config.robots.size(); ++i) {
-    groups[config.robots[i].cycle].push_back(open_bus(config.robots[i], *channels[i]));
+    groups[config.robots[i].cycle].push_back(open_bus(config.robots[i], config.dds, *channels[i]));
   }
   std::map<Time, Loop*> by_cycle;
   for (auto& [cycle, buses] : groups) {

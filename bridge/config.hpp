@@ -41,7 +41,8 @@ struct BuiltinConfig {
   std::uint32_t serial_number = 1;
   bool instant_homing = false;  // activation and homing without waiting
   bool noise = true;
-  std::string tool = "none";  // none | MEGP25E | MEGP25LS | MPM500
+  std::string tool = "none";            // none | MEGP25E | MEGP25LS | MPM500
+  std::string control_socket = "auto";  // auto | off | a path
 };
 struct EthernetIpConfig {
   std::string address;  // host name or IPv4 of the robot

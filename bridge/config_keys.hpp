@@ -44,6 +44,7 @@ inline constexpr std::array kKeys{
     Key{"robots[].transport", "instant_homing", "builtin"},
     Key{"robots[].transport", "noise", "builtin"},
     Key{"robots[].transport", "tool", "builtin"},
+    Key{"robots[].transport", "control_socket", "builtin"},
     Key{"robots[].transport", "address", "ethernet_ip"},
     Key{"robots[].transport", "tcp_port", "ethernet_ip"},
     Key{"robots[].transport", "interface", "ethercat"},

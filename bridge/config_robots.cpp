@@ -37,7 +37,7 @@ constexpr const TypeInfo& info(TransportType type) { return kTypes[static_cast<s
 struct Placed {
   RobotConfig robot;
   std::string path;  // "robots[0]"
-  yaml::Mark name, cycle, position;
+  yaml::Mark name, cycle, position, control_socket;
 };
 
 bool is_speakable_firmware(std::string_view text) {
@@ -48,6 +48,13 @@ constexpr std::string_view kFirmwareExpected =
     "9.x, 10.x or 11.x (other generations have another image), e.g. \"11.3\"";
 
 bool is_address(std::string_view text) { return config_values::is_ipv4(text) || config_values::is_host_name(text); }
+
+// The longest path that a Unix socket of Linux may have. A word without '/' is more likely a slip than a file.
+constexpr std::size_t kLongestSocketPath = 107;
+bool is_control_socket(std::string_view text) {
+  const bool is_path = text.find('/') != std::string_view::npos && !text.ends_with('/');
+  return text == "auto" || text == "off" || (is_path && text.size() <= kLongestSocketPath);
+}
 
 void read_builtin(const Section& transport, BuiltinConfig& out) {
   static constexpr std::array<std::string_view, 2> kProducts{"R3", "R4"};
@@ -60,6 +67,8 @@ void read_builtin(const Section& transport, BuiltinConfig& out) {
   static constexpr std::array<std::string_view, 4> kTools{"none", "MEGP25E", "MEGP25LS", "MPM500"};
   std::size_t tool = 0;
   if (transport.choice("tool", kTools, tool)) out.tool = kTools[tool];
+  transport.text("control_socket", "auto, off, or a path of at most 107 bytes, e.g. /run/meca500/arm1.sock",
+                 is_control_socket, out.control_socket);
 }
 
 void read_interface(const Section& transport, std::string& out) {
@@ -118,6 +127,7 @@ bool read_transport(const Section& robot, Placed& placed) {
   RobotConfig& config = placed.robot;
   config.type = kTypes[index].type;
   placed.position = transport.mark("position");
+  placed.control_socket = transport.mark("control_socket");
   switch (config.type) {
     case TransportType::kBuiltin:
       read_builtin(transport, config.builtin);
@@ -244,7 +254,7 @@ void read_control(const Section& robot, const RobotConfig& config, bool check, C
 }
 
 Placed read_robot(const Section& robot, std::string path) {
-  Placed placed{{}, std::move(path), {}, {}, {}};
+  Placed placed{{}, std::move(path), {}, {}, {}, {}};
   RobotConfig& config = placed.robot;
   robot.require("name", "name: arm1");
   robot.text("name", "1 to 63 of the characters A-Z a-z 0-9 _ -, e.g. arm1", config_values::is_robot_name, config.name);
@@ -260,7 +270,16 @@ Placed read_robot(const Section& robot, std::string path) {
   return placed;
 }
 
+void check_control_sockets(const Placed& first, const Placed& second, Report& report) {
+  const std::string& path = second.robot.builtin.control_socket;
+  if (path == "auto" || path == "off" || first.robot.builtin.control_socket != path) return;
+  report.error(second.control_socket, second.path + ".transport.control_socket",
+               "'" + path + "' is already the control socket of " + first.path + " in line " +
+                   std::to_string(first.control_socket.line) + "; each robot has its own");
+}
+
 void check_pair(const Placed& first, const Placed& second, Report& report) {
+  check_control_sockets(first, second, report);
   const RobotConfig &a = first.robot, &b = second.robot;
   if (!a.name.empty() && a.name == b.name) {
     report.error(second.name, second.path + ".name",

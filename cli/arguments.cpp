@@ -25,6 +25,7 @@ Examples:
   meca-ctl send SetJointVel 50                any command of the manual's table, by name or number
   meca-ctl --robot arm2 watch                 live view; with --json one object a line
   meca-ctl errors 1007                        what an error or stop means and what to do; all without a code
+  meca-ctl sim press p-stop2                  buttons of a simulated robot here; 'meca-ctl sim' lists them
   meca-ctl decode --input image.bin --firmware 11.3
 
 Exit codes: 0 done, 1 refused, aborted or discarded, 2 arguments, 4 no bridge or no DDS, 5 time-out, 130 interrupted.
@@ -151,6 +152,18 @@ void add_views(CLI::App& app, Invocation& call, std::map<const CLI::App*, Finish
   add_verb(app, "health", "Exit 0 when every robot's link is up (for HEALTHCHECK)", verb(Verb::kHealth), finishers);
 }
 
+void add_sim(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
+  auto* sub = add_verb(
+      app, "sim", "Buttons and faults of a simulated robot on this machine; without words: which there are",
+      [](Invocation& c, const Words& w) {
+        c.verb = Verb::kSim;
+        for (const auto& word : w.arguments) c.sim_line += (c.sim_line.empty() ? "" : " ") + word;
+      },
+      finishers);
+  sub->add_option("words", words.arguments, "As in: press e-stop");
+  sub->add_option("--socket", call.socket, "Control socket of the robot, when it is not at its usual place");
+}
+
 void add_decode(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
   auto* sub = add_verb(
       app, "decode", "Name the fields of a 60 or 252 byte process image",
@@ -235,6 +248,7 @@ std::variant<Invocation, Answer> parse_arguments(std::vector<std::string> words)
   add_views(app, call, finishers);
   add_commands(app, collected, finishers);
   add_velocity(app, call, collected, finishers);
+  add_sim(app, call, collected, finishers);
   add_decode(app, call, collected, finishers);
   add_errors(app, call, collected, finishers);
 

@@ -32,6 +32,7 @@ enum class Verb : std::uint8_t {
   kHealth,
   kReceipts,
   kErrors,
+  kSim,
 };
 
 // One command for the bridge, without robot, client and id.
@@ -68,6 +69,10 @@ struct Invocation {
 
   CommandPlan command;
   VelocityPlan velocity;
+
+  // sim
+  std::string sim_line;  // empty: which words there are
+  std::string socket;    // empty: the robot's usual one
 
   // decode
   std::string input;

@@ -152,6 +152,8 @@ ExitCode run(const Invocation& call, const Report& report) {
       return run_receipts(call, report);
     case Verb::kErrors:
       return run_errors(call, report);
+    case Verb::kSim:
+      return run_sim(call, report);
   }
   return ExitCode::kArguments;
 }

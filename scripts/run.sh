@@ -13,6 +13,7 @@ The bridge runs in this terminal until Ctrl-C. In a second one:
   build/release/bin/meca-ctl home
   build/release/bin/meca-ctl move-joints 30 20 -10 15 40 0 --wait
   build/release/bin/meca-ctl watch
+  build/release/bin/meca-ctl sim press p-stop2      its buttons; 'meca-ctl sim' lists them
 
 TEXT
 exec build/release/bin/meca-bridge "$@"

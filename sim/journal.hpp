@@ -58,6 +58,18 @@ class Log {
   std::uint64_t count_ = 0;
 };
 
-using Journal = Log<JournalEntry>;
+// Also counts what became of the commands, for ever.
+class Journal : public Log<JournalEntry> {
+ public:
+  using Log::Log;
+  void add(const JournalEntry& entry) noexcept {
+    ++counts_[static_cast<std::size_t>(entry.outcome)];
+    Log::add(entry);
+  }
+  std::uint64_t count(Outcome outcome) const noexcept { return counts_[static_cast<std::size_t>(outcome)]; }
+
+ private:
+  std::array<std::uint64_t, 3> counts_{};
+};
 
 }  // namespace meca::sim

@@ -37,6 +37,9 @@ void Robot::power_cycle() noexcept { state_->power_cycle(); }
 bool Robot::place_part(double width_mm) noexcept { return state_->tool.place_part(width_mm); }
 void Robot::set_monitoring(bool monitoring) noexcept { state_->monitoring = monitoring; }
 
+StopSignals Robot::stops() const noexcept { return state_->safety.signals(); }
+bool Robot::monitoring() const noexcept { return state_->monitoring; }
+
 const Journal& Robot::journal() const noexcept { return state_->journal; }
 const Log<Violation>& Robot::violations() const noexcept { return state_->violations; }
 

@@ -19,6 +19,12 @@ enum class StopSeverity : std::uint8_t {
   kClear = 3
 };  // SetPStop2Cfg (not reachable over cyclic protocols)
 
+// A stop signal is there, gone but not reset yet, or reset (manual 4.5.9).
+enum class StopSignal : std::uint8_t { kReset, kPresent, kResettable };
+struct StopSignals {
+  StopSignal e_stop, p_stop2, connection_dropped, reboot;
+};
+
 struct RobotOptions {
   Product product = Product::kMeca500R4;
   image::Layout layout = image::Layout::kFirmware11;  // firmware generation the model behaves like
@@ -78,6 +84,10 @@ class Robot {
   // its fingers are not open wider than that.
   bool place_part(double width_mm) noexcept;
   void set_monitoring(bool monitoring) noexcept;  // this connection may only watch: outputs are ignored
+
+  // What has been pressed, also where the image does not tell: the E-Stop of an R3, firmware 9.
+  StopSignals stops() const noexcept;
+  bool monitoring() const noexcept;
 
   // The referees: every command and what became of it, and every rule the host broke.
   const Journal& journal() const noexcept;

@@ -33,6 +33,7 @@ class Safety {
   // ResumeMotion clears what it can (firmware 9: the ResetPStop2 bit).
   void reset_resettable() noexcept;
 
+  StopSignals signals() const noexcept { return {e_stop_, p_stop2_, connection_, reboot_}; }
   bool motors_allowed() const noexcept { return e_stop_ == Stop::kReset && reboot_ == Stop::kReset; }
   bool present() const noexcept;        // any signal still there: ResumeMotion does nothing
   bool stops_motion() const noexcept;   // any signal not reset yet
@@ -40,7 +41,7 @@ class Safety {
   void report(image::Layout layout, image::Inputs& inputs) const noexcept;
 
  private:
-  enum class Stop : std::uint8_t { kReset, kPresent, kResettable };
+  using Stop = StopSignal;
   static void release(Stop& stop, bool needs_reset) noexcept {
     if (stop == Stop::kPresent) stop = needs_reset ? Stop::kResettable : Stop::kReset;
   }

@@ -7,6 +7,8 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,13 +34,20 @@ std::vector<json> lines_of(const std::string& text) {
 
 class MecaCtl : public testing::Test {
  protected:
-  void SetUp() override { start_bridge({"arm1"}); }
+  // A killed bridge leaves its control socket behind: in a directory that goes with the test.
+  void SetUp() override {
+    std::filesystem::create_directory(runtime_);
+    setenv("XDG_RUNTIME_DIR", runtime_.c_str(), 1);
+    start_bridge({"arm1"});
+  }
   void TearDown() override {
     bridge_.reset();
     std::remove(config_.c_str());
+    std::filesystem::remove_all(runtime_);
   }
 
-  void start_bridge(const std::vector<std::string>& robots) {
+  // `last` goes into the transport section of the last robot.
+  void start_bridge(const std::vector<std::string>& robots, const std::string& last = "") {
     bridge_.reset();
     std::ofstream file(config_);
     file << "dds:\n  domain: " << kDomain << "\n  interfaces: [127.0.0.1]\n  topic_prefix: " << prefix_
@@ -46,6 +55,7 @@ class MecaCtl : public testing::Test {
     for (const auto& robot : robots) {
       file << "  - name: " << robot << "\n    transport:\n      type: builtin\n      instant_homing: true\n";
     }
+    file << last;
     file.close();
     bridge_.emplace(std::vector<std::string>{MECA_BRIDGE, "--config", config_});
     const auto health = ctl({"health", "--timeout", "20"});
@@ -69,6 +79,7 @@ class MecaCtl : public testing::Test {
   }
 
   const std::string prefix_ = "cli_e2e_" + std::to_string(getpid()) + "/";
+  const std::string runtime_ = testing::TempDir() + "meca_e2e_" + std::to_string(getpid());
   const std::string config_ = testing::TempDir() + "meca_ctl_e2e_" + std::to_string(getpid()) + ".yaml";
   std::optional<Process> bridge_;
 };
@@ -256,6 +267,81 @@ TEST(MecaCtlErrors, ExplainsACodeWithoutABridge) {
   const auto unknown = run({MECA_CTL, "errors", "4711"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.output, HasSubstr("no document names an error or stop '4711'"));
+}
+
+TEST_F(MecaCtl, PStop2PressedWhileMovingIsShownWithItsRemedyAndTheRemedyHelps) {
+  make_ready();
+  ASSERT_EQ(ctl({"send", "SetJointVel", "1"}).exit_code, 0);
+  ASSERT_EQ(ctl({"move-joints", "90", "0", "0", "0", "0", "0"}).exit_code, 0);  // 90 degrees take a minute
+  EXPECT_EQ(status()["motion_status"]["eom"], false);
+  const auto press = ctl({"sim", "press", "p-stop2"});
+  EXPECT_EQ(press.exit_code, 0) << press.output;
+  EXPECT_EQ(press.output, "arm1: P-Stop 2 pressed\n");
+  const auto stopped = ctl({"status"}).output;
+  EXPECT_THAT(stopped, HasSubstr("Ready    no: P-Stop 2 is active; release it, then 'meca-ctl resume'"));
+  EXPECT_THAT(ctl({"sim", "status"}).output, HasSubstr("arm1: P-Stop 2 pressed; no error; activated, homed; 0 in"));
+  EXPECT_THAT(ctl({"sim", "journal", "1"}).output, HasSubstr("MoveJoints(90, 0, 0, 0, 0, 0)"));
+
+  EXPECT_EQ(ctl({"resume"}).exit_code, 1);  // it is still pressed
+  EXPECT_EQ(ctl({"sim", "release", "p-stop2"}).exit_code, 0);
+  EXPECT_EQ(ctl({"resume"}).exit_code, 0);
+  EXPECT_THAT(ctl({"sim", "status"}).output, HasSubstr("arm1: nothing pressed"));
+  EXPECT_EQ(ctl({"send", "SetJointVel", "50"}).exit_code, 0);
+  EXPECT_EQ(ctl({"move-joints", "10", "0", "0", "0", "0", "0", "--wait"}).exit_code, 0);
+  EXPECT_NEAR(status()["target_joint_set"]["joints"][0].get<double>(), 10, 1e-3);
+}
+
+TEST_F(MecaCtl, SimAnswersMistakesWithExitCodeOneAndNeedsNoBridgeForItsWords) {
+  const auto unknown = ctl({"sim", "raise", "error", "7"});
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_THAT(unknown.output, HasSubstr("meca-ctl: arm1: 7 is no error code"));
+  const auto json = lines_of(ctl({"sim", "raise", "error", "1007", "--json"}).output);
+  ASSERT_EQ(json.size(), 1u);
+  EXPECT_EQ(json[0]["robot"], "arm1");
+  EXPECT_EQ(json[0]["answer"][0], "the robot is in error");
+  bridge_.reset();
+  const auto words = ctl({"sim"});
+  EXPECT_EQ(words.exit_code, 0);
+  EXPECT_THAT(words.output, HasSubstr("press p-stop2"));
+  const auto nobody = ctl({"sim", "status", "--robot", "arm1"});
+  EXPECT_EQ(nobody.exit_code, 4);
+  EXPECT_THAT(nobody.output, HasSubstr("no simulated robot 'arm1' on this machine in domain 70"));
+  EXPECT_THAT(nobody.output, HasSubstr("is the bridge running here, as this user?"));
+}
+
+TEST_F(MecaCtl, SimFindsItsRobotAmongSeveralByNameOrByItsSocket) {
+  const std::string socket = runtime_ + "/arm2.sock";
+  start_bridge({"arm1", "arm2"}, "      control_socket: " + socket + "\n");
+  EXPECT_EQ(ctl({"sim", "status", "--robot", "arm1"}).exit_code, 0);
+  EXPECT_EQ(ctl({"sim", "status"}).exit_code, 0);  // arm2 is not at the usual place
+  EXPECT_EQ(ctl({"sim", "press", "e-stop", "--socket", socket}).exit_code, 0);
+  EXPECT_EQ(status("arm1")["robot_status"]["e_stop"], false);
+  EXPECT_EQ(status("arm2")["robot_status"]["e_stop"], true);
+  start_bridge({"arm1", "arm2"});
+  const auto vague = ctl({"sim", "status"});
+  EXPECT_EQ(vague.exit_code, 2);
+  EXPECT_THAT(vague.output, HasSubstr("there are several robots, arm1, arm2: say which with --robot NAME"));
+  const auto wrong = ctl({"sim", "status", "--robot", "arm3"});
+  EXPECT_EQ(wrong.exit_code, 4);
+  EXPECT_THAT(wrong.output, HasSubstr("there are arm1, arm2"));
+}
+
+TEST_F(MecaCtl, ASecondBridgeWarnsAndGoesOnWithoutTheButtonsOfTheFirst) {
+  Process second(std::vector<std::string>{MECA_BRIDGE, "--config", config_});
+  ASSERT_TRUE(second.wait_for_output("link up")) << second.output();
+  EXPECT_THAT(second.output(), HasSubstr("arm1: no control socket, its buttons cannot be pressed: "));
+  EXPECT_THAT(second.output(), HasSubstr("is in use by another process that is alive"));
+  second.signal(SIGTERM);
+  EXPECT_EQ(second.wait(), 0);
+  EXPECT_EQ(ctl({"sim", "status"}).exit_code, 0);
+}
+
+TEST_F(MecaCtl, ABridgeThatWasKilledLeavesNothingInTheWayOfTheNext) {
+  bridge_->signal(SIGKILL);
+  bridge_->wait();
+  EXPECT_EQ(ctl({"sim", "status", "--robot", "arm1"}).exit_code, 4);
+  start_bridge({"arm1"});
+  EXPECT_EQ(ctl({"sim", "status"}).exit_code, 0);
 }
 
 TEST_F(MecaCtl, TyposAreAnsweredWithoutTouchingTheRobot) {

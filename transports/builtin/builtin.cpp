@@ -15,10 +15,11 @@ constexpr Time kShortestStep = std::chrono::microseconds(1);
 
 class Builtin final : public Transport {
  public:
-  explicit Builtin(const std::vector<sim::RobotOptions>& options) {
+  Builtin(const std::vector<sim::RobotOptions>& options, std::vector<std::unique_ptr<ControlPanel>> panels) {
+    panels.resize(options.size());
     robots_.reserve(options.size());
-    for (const sim::RobotOptions& o : options) {
-      robots_.push_back({sim::Robot(o), {o.layout, std::endian::little}});
+    for (std::size_t i = 0; i < options.size(); ++i) {
+      robots_.push_back({sim::Robot(options[i]), {options[i].layout, std::endian::little}, std::move(panels[i])});
     }
   }
 
@@ -29,7 +30,8 @@ class Builtin final : public Transport {
     const Time dt = last_ ? std::clamp(now - *last_, kShortestStep, kLongestStep) : kShortestStep;
     last_ = now;
     for (std::size_t i = 0; i < std::min(exchanges.size(), robots_.size()); ++i) {
-      auto& [robot, format] = robots_[i];
+      auto& [robot, format, panel] = robots_[i];
+      if (panel) panel->serve(robot);
       Exchange& e = exchanges[i];
       if (e.output_valid && robot.present()) {
         robot.step(image::decode_outputs(e.output, format), dt);
@@ -51,6 +53,7 @@ class Builtin final : public Transport {
   struct Member {
     sim::Robot robot;
     image::Format format;
+    std::unique_ptr<ControlPanel> panel;
   };
   std::vector<Member> robots_;
   std::optional<Time> last_;
@@ -58,8 +61,9 @@ class Builtin final : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_builtin(std::vector<sim::RobotOptions> robots) {
-  return std::make_unique<Builtin>(robots);
+std::unique_ptr<Transport> make_builtin(std::vector<sim::RobotOptions> robots,
+                                        std::vector<std::unique_ptr<ControlPanel>> panels) {
+  return std::make_unique<Builtin>(robots, std::move(panels));
 }
 
 }  // namespace meca::transports

@@ -68,6 +68,16 @@ TEST(Arguments, ConnectionOptionsHaveDefaultsThatFitTheBridge) {
   EXPECT_FALSE(call.wait);
 }
 
+TEST(Arguments, SimTakesWordsAsTheyAreAndNoneForTheirList) {
+  const auto call = understood({"sim", "push", "2", "-30", "--robot", "arm2", "--socket", "/run/arm2.sock"});
+  EXPECT_EQ(call.verb, Verb::kSim);
+  EXPECT_EQ(call.sim_line, "push 2 -30");
+  EXPECT_EQ(call.robot, "arm2");
+  EXPECT_EQ(call.socket, "/run/arm2.sock");
+  EXPECT_EQ(understood({"sim"}).sim_line, "");
+  EXPECT_THAT(refusal({"sim", "press", "e-stop", "--sockt", "x"}), HasSubstr("did you mean '--socket'?"));
+}
+
 TEST(Arguments, ConnectionOptionsAreTaken) {
   const auto call =
       understood({"watch", "--domain", "7", "--prefix", "cell/", "--interface", "127.0.0.1", "--interface", "10.0.0.1",

@@ -148,6 +148,7 @@ TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
   EXPECT_EQ(a.builtin.instant_homing, b.builtin.instant_homing);
   EXPECT_EQ(a.builtin.noise, b.builtin.noise);
   EXPECT_EQ(a.builtin.tool, b.builtin.tool);
+  EXPECT_EQ(a.builtin.control_socket, b.builtin.control_socket);
   EXPECT_EQ(a.cycle, b.cycle);
   EXPECT_EQ(a.firmware, b.firmware);
   EXPECT_EQ(a.dynamic_data, b.dynamic_data);
@@ -193,7 +194,8 @@ log: {level: trace}
 realtime: {priority: 80, lock_memory: true, cpus: [2, 3]}
 robots:
   - name: arm_1-A
-    transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false, tool: MPM500}
+    transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false,
+                tool: MPM500, control_socket: /run/arm.sock}
     cycle: 500us
     firmware: 11.3.3.12637
     dynamic_data: [40, auto, 10000]
@@ -236,6 +238,7 @@ robots:
   EXPECT_TRUE(r.builtin.instant_homing);
   EXPECT_FALSE(r.builtin.noise);
   EXPECT_EQ(r.builtin.tool, "MPM500");
+  EXPECT_EQ(r.builtin.control_socket, "/run/arm.sock");
   EXPECT_EQ(r.cycle, 500us);
   EXPECT_EQ(r.firmware, (meca::transports::FirmwareVersion{11, 3, 3, 12637}));
   EXPECT_EQ(r.dynamic_data, (std::array<std::uint32_t, 4>{40, 0, 10000, 0}));

@@ -2,7 +2,9 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <string>
 
+#include "sim/panel_port.hpp"
 #include "tests/unit/sim/rig.hpp"
 #include "transports/builtin/builtin.hpp"
 
@@ -91,6 +93,28 @@ TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
   rig.out.motion_control.clear_motion = true;
   steps(10);
   EXPECT_EQ(while_stepping, 0u);
+}
+
+TEST(Allocation, NeverHappensWhenAButtonIsPressed) {
+  Rig rig(RobotOptions{});
+  PanelPort port;
+  const std::vector<std::string> lines{"press e-stop",     "press reset",        "release e-stop",
+                                       "press reset",      "press p-stop2",      "release p-stop2",
+                                       "drop connection",  "restore connection", "raise error 1007",
+                                       "raise error 1012", "monitoring on",      "monitoring off",
+                                       "status",           "power cycle",        "place part 3",
+                                       "violations",       "journal 64",         "help"};
+  for (const std::string& line : lines) {
+    const auto parsed = parse_panel_line(line);
+    const auto* request = std::get_if<PanelRequest>(&parsed);
+    ASSERT_NE(request, nullptr) << std::get<std::string>(parsed);
+    const auto before = allocations.load();
+    EXPECT_TRUE(port.ask(*request));
+    port.serve(rig.robot);
+    rig.robot.step(rig.out, std::chrono::milliseconds(1));
+    EXPECT_NE(port.answer(), nullptr);
+    EXPECT_EQ(allocations.load(), before) << line;
+  }
 }
 
 TEST(Allocation, NeverHappensInAnExchangeOfTheBuiltInTransport) {
