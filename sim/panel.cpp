@@ -131,6 +131,8 @@ void violations(Robot& robot, const PanelRequest&, PanelAnswer& answer) noexcept
 
 constexpr Number kCode[] = {{"CODE", 0, 65535, true}};
 constexpr Number kWidth[] = {{"MM", 0, 1000}};
+constexpr Number kPush[] = {{"JOINT", 1, 6, true}, {"PERCENT", -1000, 1000}};
+constexpr Number kSphere[] = {{"X", -1000, 1000}, {"Y", -1000, 1000}, {"Z", -1000, 1000}, {"RADIUS", 1, 1000}};
 constexpr Number kHowMany[] = {{"N", 1, PanelAnswer::kMostListed, true, 10}};
 
 // THE place for a new word: one row. Words of one beginning stand together; no row may begin with all words of another.
@@ -169,6 +171,25 @@ constexpr Row kRows[] = {
        done(answer, "the robot starts up");
      }},
     {"place part", kWidth, "a part of this width between the fingers of the gripper, 0 takes it away", place_part},
+    {"place obstacle", kSphere,
+     "a sphere (mm, base frame) that the robot sees coming; it minds it with SetCollisionCfg",
+     [](Robot& robot, const PanelRequest& r, PanelAnswer& answer) noexcept {
+       robot.place_obstacle(r.numbers[0], r.numbers[1], r.numbers[2], r.numbers[3]);
+       done(answer, "the obstacle is there");
+     }},
+    {"remove obstacle",
+     {},
+     "takes it away",
+     [](Robot& robot, const PanelRequest&, PanelAnswer& answer) noexcept {
+       robot.place_obstacle(0, 0, 0, 0);
+       done(answer, "there is no obstacle");
+     }},
+    {"push joint", kPush,
+     "an outside force, as torque in percent of what the motor can give; stays until changed, 0 ends it",
+     [](Robot& robot, const PanelRequest& r, PanelAnswer& answer) noexcept {
+       robot.push(static_cast<int>(r.numbers[0]), r.numbers[1]);
+       done(answer, r.numbers[1] != 0 ? "somebody pushes the joint" : "nobody pushes the joint");
+     }},
     {"monitoring on",
      {},
      "the robot ignores what this host sends",

@@ -75,7 +75,9 @@ void LineServer::run(const std::stop_token& stop) {
 }
 
 void LineServer::welcome(std::vector<Client>& clients) {
+  bool anybody = false;
   while (auto socket = listener_.accept()) {
+    anybody = true;
     if (clients.size() < kMostClients) {
       clients.emplace_back(std::move(*socket));
       continue;
@@ -84,6 +86,11 @@ void LineServer::welcome(std::vector<Client>& clients) {
         refusal_(std::to_string(kMostClients) + " clients are connected already; try again later") + "\n";
     send_some(socket->get(), text);
   }
+  if (anybody) return;
+  // Somebody waits and cannot be let in (no file descriptors left): not to be asked again at once.
+  constexpr int kPauseMs = 100;
+  pollfd end{wakeup_.get(), POLLIN, 0};
+  ::poll(&end, 1, kPauseMs);
 }
 
 // One gulp of what the client says, or of what it has not read yet; the others have their turn afterwards.

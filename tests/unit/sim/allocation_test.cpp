@@ -103,7 +103,8 @@ TEST(Allocation, NeverHappensWhenAButtonIsPressed) {
                                        "drop connection",  "restore connection", "raise error 1007",
                                        "raise error 1012", "monitoring on",      "monitoring off",
                                        "status",           "power cycle",        "place part 3",
-                                       "violations",       "journal 64",         "help"};
+                                       "violations",       "journal 64",         "help",
+                                       "push joint 2 10",  "remove obstacle",    "place obstacle 300 0 200 50"};
   for (const std::string& line : lines) {
     const auto parsed = parse_panel_line(line);
     const auto* request = std::get_if<PanelRequest>(&parsed);

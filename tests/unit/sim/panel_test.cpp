@@ -49,6 +49,9 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"place part 3",
              "error: no part fits: there is no gripper (transport.tool), or it is not open wider than the "
              "part"},
+        Said{"place obstacle 300 0 200 50", "ok: the obstacle is there"},
+        Said{"remove obstacle", "ok: there is no obstacle"}, Said{"push joint 2 -40", "ok: somebody pushes the joint"},
+        Said{"push joint 2 0", "ok: nobody pushes the joint"},
         Said{"monitoring on", "ok: the robot only lets this host watch"},
         Said{"monitoring off", "ok: the robot listens to this host"},
         Said{"status",
@@ -84,6 +87,12 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"power off", "error: 'power' does not take 'off', only cycle"},
         Said{"place part", "error: 'place part' wants MM; say 'place part MM'"},
         Said{"place part -1", "error: MM: found '-1'; expected a number from 0 to 1000"},
+        Said{"place", "error: 'place' wants a second word: part, obstacle; say for example 'place part MM'"},
+        Said{"place obstacle 300 0 200", "error: 'place obstacle' wants RADIUS; say 'place obstacle X Y Z RADIUS'"},
+        Said{"place obstacle 300 0 200 0", "error: RADIUS: found '0'; expected a number from 1 to 1000"},
+        Said{"remove obstacles", "error: 'remove' does not take 'obstacles', only obstacle"},
+        Said{"push joint 7 10", "error: JOINT: found '7'; expected a whole number from 1 to 6"},
+        Said{"push joint 2", "error: 'push joint' wants PERCENT; say 'push joint JOINT PERCENT'"},
         Said{"satus", "error: there is no word 'satus', did you mean 'status'?"},
         Said{"status all", "error: 'status' does not take 'all'; say 'status'"},
         Said{"violation", "error: there is no word 'violation', did you mean 'violations'?"},
@@ -100,10 +109,24 @@ TEST(Panel, HelpNamesEveryWordWithWhatItIsFor) {
   EXPECT_THAT(text, StartsWith("ok: the words of a simulated robot\n"));
   for (const char* word :
        {"press e-stop ", "press reset ", "press p-stop2 ", "release e-stop ", "release p-stop2 ", "drop connection ",
-        "restore connection ", "raise error CODE ", "power cycle ", "place part MM ", "monitoring on ",
-        "monitoring off ", "status ", "violations ", "journal [N] ", "help "}) {
+        "restore connection ", "raise error CODE ", "power cycle ", "place part MM ", "place obstacle X Y Z RADIUS ",
+        "remove obstacle ", "push joint JOINT PERCENT ", "monitoring on ", "monitoring off ", "status ", "violations ",
+        "journal [N] ", "help "}) {
     EXPECT_THAT(text, HasSubstr("\n  " + std::string(word)));
   }
+}
+
+TEST(Panel, APushIsTorqueOfItsJoint) {
+  RobotOptions options = Rig::quick();
+  options.noise = false;
+  Rig rig(options);
+  rig.make_ready();
+  rig.out.dynamic_data_configuration.type_ids[0] = 43;  // actual joint torques
+  for (int i = 0; i < 5; ++i) rig.step();
+  const float before = rig.robot.inputs().dynamic_data[0].values[3];
+  say(rig, "push joint 4 25");
+  for (int i = 0; i < 5; ++i) rig.step();
+  EXPECT_NEAR(rig.robot.inputs().dynamic_data[0].values[3], before + 25, 0.01);
 }
 
 TEST(Panel, EStopOfAnR4NeedsReleaseAndResetInThisOrder) {
