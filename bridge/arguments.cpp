@@ -111,7 +111,7 @@ std::string describe(const Config& config) {
       "DDS domain " + std::to_string(config.dds.domain) + ", topics " + config.dds.topic_prefix + "..., interfaces ";
   for (const std::string& address : config.dds.interfaces) text += address + " ";
   if (config.dds.interfaces.empty()) text += "all ";
-  text += config.dds.shared_memory ? "and shared memory\n" : "without shared memory\n";
+  text += config.dds.shared_memory ? "over UDP and shared memory\n" : "over UDP\n";
   for (const RobotConfig& robot : config.robots) text += describe(robot) + "\n";
   return text;
 }

@@ -73,7 +73,7 @@ std::unique_ptr<transports::ControlPanel> open_panel(const RobotConfig& robot, c
     std::filesystem::path path = socket;
     if (socket == "auto") path = transports::default_control_socket(dds.domain, dds.topic_prefix, robot.name);
     auto panel = std::make_unique<transports::ControlPanel>(std::move(path));
-    spdlog::info("{}: buttons at {}; 'meca-ctl sim help' lists them", robot.name, panel->socket().string());
+    spdlog::info("{}: the simulated robot's buttons are at {}", robot.name, panel->socket().string());
     return panel;
   } catch (const std::runtime_error& error) {
     spdlog::warn("{}: no control socket, its buttons cannot be pressed: {}", robot.name, error.what());
