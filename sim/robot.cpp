@@ -1,6 +1,7 @@
 #include "sim/robot.hpp"
 
 #include "sim/robot_state.hpp"
+#include "transports/image/codec.hpp"
 
 namespace meca::sim {
 
@@ -12,6 +13,11 @@ Robot& Robot::operator=(Robot&&) noexcept = default;
 void Robot::step(const image::Outputs& outputs, Time dt) noexcept {
   state_->take(outputs);
   state_->advance(dt);
+}
+void Robot::step(const image::OutputBytes& outputs, std::endian byte_order, Time dt) noexcept {
+  const image::Layout layout = state_->options.layout;
+  state_->check_reserved_bits(image::sets_reserved_bits(outputs, layout));
+  step(image::decode_outputs(outputs, {layout, byte_order}), dt);
 }
 void Robot::step_without_outputs(Time dt) noexcept { state_->advance(dt); }
 

@@ -2,6 +2,7 @@
 // answers with the input image of the robot manual (firmware 11.x, section 4), stricter than the real one.
 #pragma once
 
+#include <bit>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,7 @@ struct RobotOptions {
   Time homing_time = std::chrono::seconds(4);
   Time deactivation_time = std::chrono::milliseconds(500);
   Time boot_time = std::chrono::seconds(20);
+  int echo_cycles = 0;       // steps until a MoveID is echoed; a real robot needs one or two (inferred)
   bool reboot_stop = false;  // R4: after every boot, the first too, the "Reboot" stop waits for the Reset button
   bool noise = true;         // plausible noise on actual values (seeded)
   std::uint64_t seed = 1;
@@ -55,6 +57,8 @@ class Robot {
 
   // One bus cycle: takes the outputs received in it and advances the model by `dt` (> 0). Does not allocate.
   void step(const image::Outputs& outputs, Time dt) noexcept;
+  // The same from the bytes of the bus, which show reserved bits too.
+  void step(const image::OutputBytes& outputs, std::endian byte_order, Time dt) noexcept;
   // No output image arrived in this cycle: the model only advances (velocity time-out runs).
   void step_without_outputs(Time dt) noexcept;
 

@@ -1,4 +1,7 @@
 // What the host says: control bits, the MoveID handshake and commands.
+#include <array>
+#include <bit>
+
 #include "sim/error.hpp"
 #include "sim/robot_state.hpp"
 #include "transports/image/error_codes.hpp"
@@ -99,8 +102,10 @@ bool Robot::State::takes_no_commands() const noexcept {
 void Robot::State::take_command(const image::Outputs& o) noexcept {
   const image::MotionControl& c = o.motion_control;
   if (!c.set_point) return;
+  check_handshake(o);
   const bool cyclic = c.move_id == 0;
   const bool changed = c.move_id != move_id;
+  if (changed) echo_left = options.echo_cycles;
   move_id = c.move_id;
   if (!cyclic && !changed) return;
   if (cyclic && o.motion_command.command_id == 0) return;
@@ -171,6 +176,24 @@ void Robot::State::configure(const Command& command) noexcept {
   zones.restart();
   for (const std::uint32_t type : shown_by(command.id)) slots.changed(type);
   journal.add({now, command, Outcome::kExecuted, 0});
+}
+
+// Whoever does not wait for the echo may lose a command, or have an old one run with new arguments (manual 9.2,
+// p. 64).
+using MotionCommandBits = std::array<std::uint32_t, sizeof(image::MotionCommand) / 4>;  // a NaN equals itself
+void Robot::State::check_handshake(const image::Outputs& next) noexcept {
+  if (echo == move_id) return;
+  if (next.motion_control.move_id != move_id) {
+    violation("MoveID was changed before the robot had echoed it");
+  } else if (std::bit_cast<MotionCommandBits>(next.motion_command) !=
+             std::bit_cast<MotionCommandBits>(outputs.motion_command)) {
+    violation("a command or its arguments were changed before the robot had echoed its MoveID");
+  }
+}
+
+void Robot::State::check_reserved_bits(bool set) noexcept {
+  if (set && !reserved_bits_set) violation("a reserved bit of the output image was set");
+  reserved_bits_set = set;
 }
 
 // A host that does not wait for the confirmation works by luck on a real robot.

@@ -93,7 +93,8 @@ void Robot::State::start_up() noexcept {
   error = error::kNone;
   sim_mode = recovery_mode = brakes_released_by_hand = paused = false;
   cleared = true;
-  move_id = 0;
+  move_id = echo = 0;
+  echo_left = 0;
   host_seconds = 0;
   outputs = {};
   refused_in_cyclic_mode = {};
@@ -154,7 +155,12 @@ void Robot::State::report() noexcept {
   const bool moving = motion.moving();
   m.checkpoint_reached = motion.checkpoint_reached();
   m.checkpoint_discarded = options.layout == image::Layout::kFirmware11 ? motion.checkpoint_discarded() : 0;
-  m.move_id = move_id;
+  if (echo_left == 0) {
+    echo = move_id;
+  } else {
+    --echo_left;
+  }
+  m.move_id = echo;
   m.fifo_space = static_cast<std::uint16_t>(motion.fifo_space());
   m.offline_program_id = motion.running_program();
   m.paused = paused && power.activated();

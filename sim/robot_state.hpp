@@ -27,6 +27,7 @@ struct Robot::State {
 
   void fail(std::uint16_t code) noexcept;  // enters the error state
   void press_e_stop() noexcept;
+  void check_reserved_bits(bool set) noexcept;
   void power_cycle() noexcept;
 
   const RobotOptions options;
@@ -50,7 +51,10 @@ struct Robot::State {
   bool brakes_released_by_hand = false;  // while deactivated
   bool paused = false;                   // until resumed
   bool cleared = true;                   // until a command is queued or motion is resumed
-  std::uint16_t move_id = 0;             // the echo
+  std::uint16_t move_id = 0;             // received last
+  int echo_left = 0;                     // steps until it is shown
+  bool reserved_bits_set = false;        // in the last image
+  std::uint16_t echo = 0;                // shown: `move_id`, once it has been echoed
   std::uint32_t host_seconds = 0;        // for the robot's log only
   image::Outputs outputs;                // as received last
   image::Inputs inputs;
@@ -68,6 +72,7 @@ struct Robot::State {
   void configure(const Command& command) noexcept;
   bool takes_no_commands() const noexcept;
   void check_levels(const image::Outputs& next) noexcept;
+  void check_handshake(const image::Outputs& next) noexcept;
   void violation(std::string_view what) noexcept { violations.add({now, what}); }
 
   void advance_tool(double seconds) noexcept;

@@ -1,6 +1,7 @@
 #include "bridge/control/move_sequencer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace meca::control {
 namespace {
@@ -24,18 +25,9 @@ MoveSequencer::MoveSequencer(Ledger& ledger, Time acknowledge_timeout) noexcept
 
 void MoveSequencer::seed(const View& view) noexcept {
   const std::uint16_t echo = view.in.motion_status.move_id;
-  if (flight_) {
-    if (echo == move_id_) {
-      acknowledged();
-    } else if (flight_->is_checkpoint) {
-      checkpoint_due_ = flight_->motion.ticket;
-      flight_.reset();
-    } else {
-      ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, Reason::kLinkLost);  // the robot never got it
-      flight_.reset();
-    }
-  }
-  if (withdrawn_) resolve_withdrawn(echo == move_id_);
+  // The first images may be older than what was sent last: whether the robot got it shows a little later.
+  if (flight_) withdraw(*flight_);
+  withdrawn_images_ = 0;
   proofs_wait_ = true;
   if (seeded_) {
     reached(view);
@@ -43,18 +35,16 @@ void MoveSequencer::seed(const View& view) noexcept {
     // Half the range further: whatever an earlier life of this bridge left in the robot's queue is passed before ours.
     const std::uint32_t last = view.in.motion_status.checkpoint_reached;
     if (own_checkpoint(last)) {
-      next_checkpoint_ =
+      last_checkpoint_ =
           kFirstOwnCheckpoint + (last - kFirstOwnCheckpoint + 500) % (kLastOwnCheckpoint - kFirstOwnCheckpoint + 1);
     }
   }
+  if (!withdrawing_) last_id_ = echo;  // else on from our own: what may still be on its way must not meet a namesake
   seeded_ = true;
-  last_reached_ = view.in.motion_status.checkpoint_reached;
-  last_discarded_ = view.in.motion_status.checkpoint_discarded;
-  move_id_ = last_id_ = echo;
+  move_id_ = echo;
   command_ = 0;
   arguments_ = {};
-  use_variables_ = armed_ = withdrawing_ = false;
-  fresh_since_echo_ = kSettleImages;
+  use_variables_ = armed_ = false;
   idle_images_ = rest_images_ = 0;
 }
 
@@ -74,10 +64,10 @@ void MoveSequencer::observe(const View& view) noexcept {
     slowing_down_ = view.in.robot_status.error_code != 0 || (slowing_down_ && !view.in.motion_status.eom);
     const bool resting = view.in.motion_status.paused && view.in.motion_status.eom;
     rest_images_ = resting ? std::min(rest_images_ + 1, kRestImages + 1) : 0;
-    if (flight_ && echo == move_id_) acknowledged();
-    if (withdrawing_ && (echo == move_id_ || ++withdrawn_images_ > kSettleImages)) {
+    if (flight_ && echo == move_id_) acknowledged(*std::exchange(flight_, std::nullopt));
+    if (withdrawing_ && (echo == withdrawn_id_ || ++withdrawn_images_ > kSettleImages)) {
       withdrawing_ = false;
-      if (withdrawn_) resolve_withdrawn(echo == move_id_);
+      if (withdrawn_) resolve_withdrawn(echo == withdrawn_id_);
       move_id_ = echo;  // with SetPoint 0 the robot does not look at it
     }
     reached(view);
@@ -88,11 +78,9 @@ void MoveSequencer::observe(const View& view) noexcept {
   }
 }
 
-void MoveSequencer::acknowledged() noexcept {
+void MoveSequencer::acknowledged(const Flight& flight) noexcept {
   fresh_since_echo_ = 0;
   idle_images_ = 0;
-  const Flight flight = *flight_;
-  flight_.reset();
   const Ticket& ticket = flight.motion.ticket;
   if (flight.is_checkpoint) {
     awaiting_.push({ticket, flight.checkpoint});
@@ -126,29 +114,36 @@ void MoveSequencer::discard_through(std::size_t count, const View& view) noexcep
   }
 }
 
+// How many of the awaited ones this checkpoint says something about: up to itself. What an image shows is taken as it
+// stands, not as an edge: a robot may show a checkpoint before it echoes the MoveID that brought it.
+std::size_t MoveSequencer::awaited_through(std::uint32_t checkpoint) const noexcept {
+  for (std::size_t i = 0; i < awaiting_.size(); ++i) {
+    if (awaiting_.at(i).checkpoint == checkpoint) return i + 1;
+  }
+  return 0;
+}
+
+// One that the robot does not show already, as reached or as discarded.
+std::uint32_t MoveSequencer::next_checkpoint(const image::MotionStatus& shown) noexcept {
+  do {
+    last_checkpoint_ = last_checkpoint_ == kLastOwnCheckpoint ? kFirstOwnCheckpoint : last_checkpoint_ + 1;
+  } while (last_checkpoint_ == shown.checkpoint_reached || last_checkpoint_ == shown.checkpoint_discarded);
+  return last_checkpoint_;
+}
+
 void MoveSequencer::reached(const View& view) noexcept {
   const image::MotionStatus& m = view.in.motion_status;
-  if (m.checkpoint_reached != last_reached_) {
-    last_reached_ = m.checkpoint_reached;
-    for (std::size_t i = 0; i < awaiting_.size(); ++i) {
-      if (awaiting_.at(i).checkpoint == last_reached_) {
-        complete_through(i + 1);  // several may be reached between two images; the queue keeps their order
-        break;
-      }
-    }
+  if (const std::size_t count = awaited_through(m.checkpoint_reached); count > 0) {
+    complete_through(count);  // several may be reached between two images; the queue keeps their order
   }
   // While the queue is being cleared on purpose, end_all() tells the reason.
-  if (m.checkpoint_discarded != last_discarded_) {
-    last_discarded_ = m.checkpoint_discarded;
-    for (std::size_t i = 0; i < awaiting_.size() && !dropping_; ++i) {
-      if (awaiting_.at(i).checkpoint != last_discarded_) continue;
-      discard_through(i + 1, view);
-      // A command behind it whose own checkpoint was not sent yet is gone too, and its checkpoint would prove nothing.
-      if (checkpoint_due_ && awaiting_.empty()) {
-        awaiting_.push({*checkpoint_due_, 0});
-        checkpoint_due_.reset();
-        discard_through(1, view);
-      }
+  if (const std::size_t count = dropping_ ? 0 : awaited_through(m.checkpoint_discarded); count > 0) {
+    discard_through(count, view);
+    // A command behind it whose own checkpoint was not sent yet is gone too, and its checkpoint would prove nothing.
+    if (checkpoint_due_ && awaiting_.empty()) {
+      awaiting_.push({*checkpoint_due_, 0});
+      checkpoint_due_.reset();
+      discard_through(1, view);
     }
   }
   // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).
@@ -171,18 +166,18 @@ void MoveSequencer::prove_by_rest(const image::MotionStatus& m) noexcept {
 }
 
 void MoveSequencer::resolve_withdrawn(bool taken) noexcept {
+  const Flight flight = *std::exchange(withdrawn_, std::nullopt);
   if (taken) {
-    awaiting_.push(*withdrawn_);
+    acknowledged(flight);
+  } else if (flight.is_checkpoint) {
+    checkpoint_due_ = flight.motion.ticket;
   } else {
-    checkpoint_due_ = withdrawn_->ticket;
+    ledger_.report(flight.motion.ticket, ReceiptState::kAborted, Reason::kLinkLost);  // the robot never got it
   }
-  withdrawn_.reset();
 }
 
 void MoveSequencer::pause_rises() noexcept {
-  if (!flight_ || !flight_->is_checkpoint) return;
-  withdrawn_ = Awaited{flight_->motion.ticket, flight_->checkpoint};
-  withdraw();
+  if (flight_ && flight_->is_checkpoint) withdraw(*flight_);
 }
 
 void MoveSequencer::put(const View& view, std::uint32_t command, const Motion& motion, bool is_checkpoint) noexcept {
@@ -202,12 +197,12 @@ void MoveSequencer::advance(const View& view, bool hold, bool pausing) noexcept 
   if (paused && rest_images_ <= kRestImages) return;
   if (checkpoint_due_) {
     if (awaiting_.full() || proofs_wait_) return;
+    const std::uint32_t number = next_checkpoint(view.in.motion_status);
     Motion checkpoint;
     checkpoint.ticket = *checkpoint_due_;
-    checkpoint.arguments[0] = static_cast<float>(next_checkpoint_);
+    checkpoint.arguments[0] = static_cast<float>(number);
     put(view, image::kSetCheckpoint, checkpoint, true);
-    flight_->checkpoint = next_checkpoint_;
-    next_checkpoint_ = next_checkpoint_ == kLastOwnCheckpoint ? kFirstOwnCheckpoint : next_checkpoint_ + 1;
+    flight_->checkpoint = number;
     checkpoint_due_.reset();
     return;
   }
@@ -222,11 +217,13 @@ void MoveSequencer::discard_unsent(Reason reason) noexcept {
   for (; !queue_.empty(); queue_.pop()) ledger_.report(queue_.front().ticket, ReceiptState::kDiscarded, reason);
 }
 
-void MoveSequencer::withdraw() noexcept {
+void MoveSequencer::withdraw(const std::optional<Flight>& open) noexcept {
+  withdrawn_ = open;
+  withdrawn_id_ = move_id_;
+  withdrawn_images_ = 0;
+  withdrawing_ = true;
   flight_.reset();
   armed_ = false;
-  withdrawing_ = true;
-  withdrawn_images_ = 0;
 }
 
 void MoveSequencer::end_all(ReceiptState sent, Reason reason, std::uint16_t robot_error) noexcept {
@@ -234,11 +231,11 @@ void MoveSequencer::end_all(ReceiptState sent, Reason reason, std::uint16_t robo
   for (; !awaiting_.empty(); awaiting_.pop()) ledger_.report(awaiting_.front().ticket, sent, reason, detail);
   if (checkpoint_due_) ledger_.report(*checkpoint_due_, sent, reason, detail);
   checkpoint_due_.reset();
-  if (withdrawn_) ledger_.report(withdrawn_->ticket, sent, reason, detail);
+  if (withdrawn_) ledger_.report(withdrawn_->motion.ticket, sent, reason, detail);
   withdrawn_.reset();
   if (flight_) {
     ledger_.report(flight_->motion.ticket, sent, reason, detail);
-    withdraw();
+    withdraw(std::nullopt);
   }
   for (; !queue_.empty(); queue_.pop()) {
     ledger_.report(queue_.front().ticket, ReceiptState::kDiscarded, reason, detail);
@@ -252,11 +249,11 @@ void MoveSequencer::end_motion(Reason reason) noexcept {
   }
   if (checkpoint_due_) ledger_.report(*checkpoint_due_, ReceiptState::kAborted, reason);
   checkpoint_due_.reset();
-  if (withdrawn_) ledger_.report(withdrawn_->ticket, ReceiptState::kAborted, reason);
+  if (withdrawn_) ledger_.report(withdrawn_->motion.ticket, ReceiptState::kAborted, reason);
   withdrawn_.reset();
   if (flight_ && needs_motors(flight_->motion.command_class)) {
     ledger_.report(flight_->motion.ticket, ReceiptState::kAborted, reason);
-    withdraw();
+    withdraw(std::nullopt);
   }
   for (std::size_t left = queue_.size(); left > 0; --left) {
     const Motion m = queue_.front();

@@ -105,13 +105,17 @@ class MoveSequencer {
 
   std::uint16_t next_id(std::uint16_t echo) const noexcept;
   void put(const View& view, std::uint32_t command, const Motion& motion, bool is_checkpoint) noexcept;
-  void acknowledged() noexcept;
+  void acknowledged(const Flight& flight) noexcept;
+  std::size_t awaited_through(std::uint32_t checkpoint) const noexcept;
+  std::uint32_t next_checkpoint(const image::MotionStatus& shown) noexcept;
   void reached(const View& view) noexcept;
   void prove_by_rest(const image::MotionStatus& m) noexcept;
   void resolve_withdrawn(bool taken) noexcept;
   void complete_through(std::size_t count) noexcept;
   void discard_through(std::size_t count, const View& view) noexcept;
-  void withdraw() noexcept;
+  // SetPoint falls before the echo; the next images tell whether the robot took it. `open`: its end is still to be
+  // told.
+  void withdraw(const std::optional<Flight>& open) noexcept;
 
   Ledger& ledger_;
   Time acknowledge_timeout_;
@@ -128,13 +132,12 @@ class MoveSequencer {
   bool armed_ = false;
 
   std::uint16_t last_id_ = 0;  // last MoveID used, echoed or not
-  std::uint32_t next_checkpoint_ = kFirstOwnCheckpoint;
-  std::uint32_t last_reached_ = 0;
-  std::uint16_t last_discarded_ = 0;
+  std::uint32_t last_checkpoint_ = kLastOwnCheckpoint;
   bool dropping_ = false;
   bool withdrawing_ = false;  // a MoveID stands unechoed with SetPoint 0: learn whether it was taken
+  std::uint16_t withdrawn_id_ = 0;
   int withdrawn_images_ = 0;
-  std::optional<Awaited> withdrawn_;  // it is our checkpoint
+  std::optional<Flight> withdrawn_;  // what becomes of it is still to be told
   bool proofs_wait_ = false;
   int fresh_since_echo_ = kSettleImages;
   int idle_images_ = 0;

@@ -34,7 +34,7 @@ class Builtin final : public Transport {
       if (panel) panel->serve(robot);
       Exchange& e = exchanges[i];
       if (e.output_valid && robot.present()) {
-        robot.step(image::decode_outputs(e.output, format), dt);
+        robot.step(e.output, format.byte_order, dt);
       } else {
         robot.step_without_outputs(dt);
       }

@@ -1,6 +1,7 @@
 #include "transports/image/codec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -123,6 +124,19 @@ void with_format(Format format, auto&& body) noexcept {
   with_layout<std::endian::little>(format.layout, body);
 }
 
+constexpr std::array<std::byte, kOutputSize> reserved_bits(Layout layout) noexcept {
+  std::array<std::byte, kOutputSize> mask{};
+  for (const ReservedRange& range : kOutputReserved) {
+    if (!range.layouts.has(layout)) continue;
+    for (std::size_t bit = range.first_bit(); bit < range.first_bit() + range.bits; ++bit) {
+      mask[bit / 8] |= std::byte{1} << (bit % 8);
+    }
+  }
+  return mask;
+}
+constexpr std::array kReservedBits{reserved_bits(Layout::kFirmware9), reserved_bits(Layout::kFirmware10),
+                                   reserved_bits(Layout::kFirmware11)};
+
 }  // namespace
 
 Inputs decode_inputs(std::span<const std::byte, kInputSize> bytes, Format format) noexcept {
@@ -154,6 +168,13 @@ void encode_outputs(const Outputs& outputs, Format format, std::span<std::byte, 
   with_format(format, [&]<Layout kLayout, std::endian kOrder>() {
     encode_all<kOutputFields, kLayout, kOrder>(outputs, bytes.data());
   });
+}
+
+bool sets_reserved_bits(std::span<const std::byte, kOutputSize> outputs, Layout layout) noexcept {
+  const auto& mask = kReservedBits[static_cast<std::size_t>(layout)];
+  std::byte set{};
+  for (std::size_t i = 0; i < kOutputSize; ++i) set |= outputs[i] & mask[i];
+  return set != std::byte{};
 }
 
 }  // namespace meca::image

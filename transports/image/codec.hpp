@@ -18,6 +18,9 @@ struct Format {
 Inputs decode_inputs(std::span<const std::byte, kInputSize> bytes, Format format) noexcept;
 Outputs decode_outputs(std::span<const std::byte, kOutputSize> bytes, Format format) noexcept;
 
+// Whether a bit is set that this layout does not give a meaning to: it must be 0 (manual 4.4).
+bool sets_reserved_bits(std::span<const std::byte, kOutputSize> outputs, Layout layout) noexcept;
+
 // Reserved bits and fields the layout does not have are written 0.
 void encode_inputs(const Inputs& inputs, Format format, std::span<std::byte, kInputSize> bytes) noexcept;
 void encode_outputs(const Outputs& outputs, Format format, std::span<std::byte, kOutputSize> bytes) noexcept;

@@ -40,7 +40,11 @@ struct Figures {
 class Million : public Bench {
  public:
   Million(Layout layout, std::uint64_t commands, unsigned seed, std::uint32_t trouble = 1)
-      : Bench(settings_for_play(), layout), goal_(commands), trouble_(trouble), random_(seed), model_(options(layout)) {
+      : Bench(settings_for_play(), layout),
+        goal_(commands),
+        trouble_(trouble),
+        random_(seed),
+        model_(options(layout, seed)) {
     sim = &model_;
     keep_alive = false;
     for (int i = 0; i < kClients; ++i) {
@@ -91,8 +95,9 @@ class Million : public Bench {
     s.action_timeout = 5s;
     return s;
   }
-  static sim::RobotOptions options(Layout layout) {
+  static sim::RobotOptions options(Layout layout, unsigned seed) {
     sim::RobotOptions o;
+    o.echo_cycles = static_cast<int>(seed + 2) % 3;  // with each seed another one of 0, 1, 2
     o.layout = layout;
     o.activation_time = o.homing_time = o.deactivation_time = 5ms;
     o.noise = false;
@@ -421,7 +426,7 @@ class Million : public Bench {
     }
     const Figures& f = figures_;
     EXPECT_EQ(f.executed, f.completed);
-    EXPECT_GT(f.executed, f.commands / 2) << "too little was executed to prove anything";
+    EXPECT_GT(f.executed, f.commands / 3) << "too little was executed to prove anything";
     EXPECT_EQ(f.cuts, kCuts);
     EXPECT_EQ(f.full_queues, kEpisodes);
     EXPECT_EQ(f.restarts, 1u);

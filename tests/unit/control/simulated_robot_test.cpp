@@ -139,6 +139,48 @@ TEST_P(OnEveryFirmware, an_emergency_stop_needs_its_release_and_a_new_activation
   EXPECT_OUTCOME(b.outcome(kActivate), kCompleted, Reason::kNone);
 }
 
+// A robot that needs a cycle or two for its echo shows what a command did before it says that it has the command.
+class RobotThatEchoesLate : public testing::TestWithParam<int> {
+ protected:
+  static sim::RobotOptions options() {
+    sim::RobotOptions o = SimBench::options(Layout::kFirmware11);
+    o.echo_cycles = GetParam();
+    return o;
+  }
+};
+
+TEST_P(RobotThatEchoesLate, is_waited_for_and_its_checkpoints_are_not_missed) {
+  SimBench b(options());
+  b.make_ready();
+  std::vector<std::uint64_t> ids;
+  for (int i = 0; i < 5; ++i) {
+    ids.push_back(b.move(i));
+    ids.push_back(b.send(b.motion(image::kSetJointVel, {20.0 + i})));
+  }
+  for (const auto id : ids) EXPECT_OUTCOME(b.outcome(id), kCompleted, Reason::kNone);
+  EXPECT_EQ(b.executed().size(), ids.size());
+  b.expect_no_violation();
+}
+
+TEST_P(RobotThatEchoesLate, is_not_misunderstood_when_the_link_is_cut_before_the_echo) {
+  for (int cut_after = 0; cut_after < 6; ++cut_after) {
+    for (int length = 1; length < 5; ++length) {
+      SCOPED_TRACE("cut after " + std::to_string(cut_after) + " cycles, for " + std::to_string(length));
+      SimBench b(options());
+      b.make_ready();
+      const auto id = b.send(b.motion(image::kSetJointVel, {33}));
+      b.steps(cut_after);
+      b.link_up = false;
+      b.steps(length);
+      b.link_up = true;
+      EXPECT_EQ(b.executed().size(), b.outcome(id).state == kCompleted ? 1U : 0U);
+      b.expect_no_violation();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cycles, RobotThatEchoesLate, testing::Values(1, 2));
+
 INSTANTIATE_TEST_SUITE_P(Firmware, OnEveryFirmware,
                          testing::Values(Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11),
                          [](const auto& info) {

@@ -214,6 +214,77 @@ TEST(Strictness, ALevelDroppedBeforeItsConfirmationIsAViolation) {
   EXPECT_EQ(rig.robot.violations()[0].what, "Activate was dropped before Activated confirmed it");
 }
 
+class LateEcho : public testing::Test {
+ protected:
+  static RobotOptions two_cycles() {
+    RobotOptions o = Rig::quick();
+    o.echo_cycles = 2;
+    return o;
+  }
+  LateEcho() : rig(two_cycles()) {
+    rig.make_ready();
+    rig.out.motion_command = {image::kMoveJoints, {10, 0, 0, 0, 0, 0}};
+    rig.out.motion_control.move_id = 1;
+    rig.out.motion_control.set_point = true;
+    rig.step();
+  }
+  std::string_view violation() const {
+    return rig.robot.violations().size() == 1 ? rig.robot.violations()[0].what : "not one violation";
+  }
+  Rig rig;
+};
+
+TEST_F(LateEcho, ComesAfterItsCyclesAndWhoWaitsForItIsNotAccused) {
+  EXPECT_EQ(rig.robot.inputs().motion_status.move_id, 0);
+  EXPECT_EQ(rig.step().motion_status.move_id, 0);
+  EXPECT_EQ(rig.step().motion_status.move_id, 1);
+  rig.out.motion_command.arguments[0] = 20;
+  rig.out.motion_control.move_id = 2;
+  rig.step();
+  EXPECT_EQ(rig.robot.violations().size(), 0u);
+}
+
+TEST_F(LateEcho, AMoveIdThatChangesBeforeItIsAViolation) {
+  rig.out.motion_control.move_id = 2;
+  rig.step();
+  EXPECT_EQ(violation(), "MoveID was changed before the robot had echoed it");
+}
+
+TEST_F(LateEcho, ArgumentsThatChangeBeforeItAreAViolation) {
+  rig.out.motion_command.arguments[0] = 20;
+  rig.step();
+  EXPECT_EQ(violation(), "a command or its arguments were changed before the robot had echoed its MoveID");
+}
+
+TEST_F(LateEcho, ASetPointThatFallsBeforeItIsNone) {  // a stop must not wait
+  rig.out.motion_control.set_point = false;
+  rig.step();
+  EXPECT_EQ(rig.robot.violations().size(), 0u);
+}
+
+TEST(Strictness, AReservedBitIsAViolationOnceUntilItFalls) {
+  Rig rig;
+  image::OutputBytes bytes{};
+  rig.robot.step(bytes, std::endian::little, 1ms);
+  EXPECT_EQ(rig.robot.violations().size(), 0u);
+  bytes[43] = std::byte{0x80};  // the last of the 30 reserved bits behind BrakesEngaged
+  for (int i = 0; i < 3; ++i) rig.robot.step(bytes, std::endian::little, 1ms);
+  ASSERT_EQ(rig.robot.violations().size(), 1u);
+  EXPECT_EQ(rig.robot.violations()[0].what, "a reserved bit of the output image was set");
+  bytes[43] = {};
+  bytes[6] = std::byte{0x10};  // UseVariables, which firmware 11 has
+  rig.robot.step(bytes, std::endian::little, 1ms);
+  EXPECT_EQ(rig.robot.violations().size(), 1u);
+}
+
+TEST(Strictness, UseVariablesIsAReservedBitBeforeFirmware11) {
+  Rig rig(Rig::quick(image::Layout::kFirmware10));
+  image::OutputBytes bytes{};
+  bytes[6] = std::byte{0x10};
+  rig.robot.step(bytes, std::endian::little, 1ms);
+  EXPECT_EQ(rig.robot.violations().size(), 1u);
+}
+
 TEST(Strictness, AGoodHostIsNotAccused) {
   Rig rig;
   rig.make_ready();
