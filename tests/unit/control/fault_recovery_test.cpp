@@ -129,7 +129,8 @@ constexpr std::size_t kFaults = kFaultNames.size();
 
 class Theatre : public Bench {
  public:
-  Theatre(Layout layout, unsigned seed) : Bench({}, layout), random_(seed), referee_(layout) {
+  Theatre(Layout layout, int echo_cycles, unsigned seed)
+      : Bench({}, layout), echo_cycles_(echo_cycles), random_(seed), referee_(layout) {
     model_ = std::make_unique<sim::Robot>(options());
     sim = model_.get();
   }
@@ -165,6 +166,7 @@ class Theatre : public Bench {
   sim::RobotOptions options() const {
     sim::RobotOptions o;
     o.layout = layout;
+    o.echo_cycles = echo_cycles_;
     o.activation_time = o.homing_time = o.deactivation_time = 5ms;
     o.noise = false;
     o.journal_capacity = 16;
@@ -456,6 +458,7 @@ class Theatre : public Bench {
       std::printf(" %s %d%s", kFaultNames[f], struck_[f], f + 1 < kFaults ? "," : "\n");
   }
 
+  int echo_cycles_;
   std::mt19937 random_;
   Referee referee_;
   std::unique_ptr<sim::Robot> model_;
@@ -476,16 +479,19 @@ int sequences() {
   return wanted ? static_cast<int>(std::strtol(wanted, nullptr, 10)) : 1000;
 }
 
-class FaultAndRecovery : public testing::TestWithParam<Layout> {};
+class FaultAndRecovery : public testing::TestWithParam<std::tuple<Layout, int>> {};
 
 TEST_P(FaultAndRecovery, set_nothing_going_that_nobody_asked_for_after_the_fault) {
-  Theatre(GetParam(), 7).play(sequences());
+  const auto [layout, echo_cycles] = GetParam();
+  Theatre(layout, echo_cycles, 7).play(sequences());
 }
 
 INSTANTIATE_TEST_SUITE_P(Firmware, FaultAndRecovery,
-                         testing::Values(Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11),
+                         testing::Combine(testing::Values(Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11),
+                                          testing::Values(0, 2)),
                          [](const auto& info) {
-                           return "firmware_" + std::to_string(9 + static_cast<int>(info.param));
+                           return "firmware_" + std::to_string(9 + static_cast<int>(std::get<0>(info.param))) +
+                                  "_echo_after_" + std::to_string(std::get<1>(info.param)) + "_cycles";
                          });
 
 }  // namespace
