@@ -31,6 +31,8 @@ Receipt refused(const ClientName& client, std::uint64_t command_id, CommandKind 
   return r;
 }
 
+bool is_off(const View& view) noexcept { return !view.in.robot_status.activated && !view.in.robot_status.busy; }
+
 }  // namespace
 
 Controller::Controller(const ControllerSettings& s) noexcept
@@ -160,11 +162,11 @@ void Controller::follow_monitoring_mode(const View& view) noexcept {
 // Until somebody resumes, but not while the motors are off: what such a robot takes moves nothing, and one whose error
 // only a reboot clears can never be resumed.
 bool Controller::held_by_stop(const View& view) const noexcept {
-  const bool off = !view.in.robot_status.activated && !view.in.robot_status.busy;
-  return stop_.active() || (actions_.pause_held_by_stop() && !off);
+  return stop_.active() || (actions_.pause_held_by_stop() && !is_off(view));
 }
 
 bool Controller::robot_may_move(const View& view) const noexcept {
+  if (is_off(view)) return false;
   return !sequencer_.idle() || sequencer_.robot_may_be_busy() || velocity_.active() ||
          (view.in.robot_status.activated && !view.in.motion_status.eob);
 }
@@ -266,7 +268,7 @@ void Controller::execute(const CommandRequest& request, const Ticket& ticket, co
     case CommandKind::kBrakes:
     case CommandKind::kDynamicData:
     case CommandKind::kSetHostTime:
-      return actions_.accept(request, ticket, view, !robot_may_move(view));
+      return actions_.accept(request, ticket, view, sequencer_.idle() && !robot_may_move(view));
   }
 }
 

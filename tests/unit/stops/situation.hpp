@@ -45,5 +45,6 @@ std::vector<Situation> safety_situations();
 std::vector<Situation> error_situations();
 std::vector<Situation> motion_situations();
 std::vector<Situation> link_situations();
+std::vector<Situation> watch_situations();
 
 }  // namespace meca::test

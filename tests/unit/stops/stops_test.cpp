@@ -16,7 +16,8 @@ using ::testing::StartsWith;
 
 std::vector<Situation> all_situations() {
   std::vector<Situation> all;
-  for (const auto& part : {safety_situations(), error_situations(), motion_situations(), link_situations()}) {
+  for (const auto& part :
+       {safety_situations(), error_situations(), motion_situations(), link_situations(), watch_situations()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
