@@ -57,6 +57,7 @@ class Bench {
     out = image::decode_outputs(exchange.output, {layout});
   }
   void exchange_frames() {
+    if (wire) return wire();
     const bool up = link_up && (!sim || sim->present());
     exchange.link = up ? LinkState::kUp : LinkState::kDown;
     exchange.fresh = false;
@@ -173,7 +174,8 @@ class Bench {
 
   CycleSettings settings;
   TinyRobot robot;
-  sim::Robot* sim = nullptr;  // in place of the tiny robot, when set
+  sim::Robot* sim = nullptr;   // in place of the tiny robot, when set
+  std::function<void()> wire;  // a fieldbus in place of the direct link, when set
   Layout layout;
   std::unique_ptr<bridge::StepResult> result;
   std::unique_ptr<bridge::Cycle> cycle;
