@@ -28,7 +28,7 @@ void Robot::release_e_stop() noexcept { state_->safety.release_e_stop(); }
 void Robot::press_reset_button() noexcept { state_->safety.press_reset_button(); }
 void Robot::press_p_stop2() noexcept { state_->safety.press_p_stop2(); }
 void Robot::release_p_stop2() noexcept { state_->safety.release_p_stop2(); }
-void Robot::drop_connection() noexcept { state_->safety.drop_connection(); }
+void Robot::drop_connection() noexcept { state_->drop_connection(); }
 void Robot::restore_connection() noexcept { state_->safety.restore_connection(); }
 void Robot::push(int joint, double percent) noexcept {
   if (joint >= 1 && joint <= 6) state_->push[static_cast<std::size_t>(joint - 1)] = percent;

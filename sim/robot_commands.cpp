@@ -28,6 +28,16 @@ void Robot::State::press_e_stop() noexcept {
   tool.cut();
 }
 
+// inferred: firmware 9, which has no safety section to show it in, knows no such stop that waits for its reset; it
+// stops, clears its queue and stays paused.
+void Robot::State::drop_connection() noexcept {
+  if (options.layout != image::Layout::kFirmware9) return safety.drop_connection();
+  if (!power.ready()) return;
+  paused = true;
+  cleared = true;
+  motion.clear(now);
+}
+
 void Robot::State::take(const image::Outputs& next) noexcept {
   if (monitoring || !boot.up()) return;
   check_levels(next);

@@ -27,6 +27,7 @@ struct Robot::State {
 
   void fail(std::uint16_t code) noexcept;  // enters the error state
   void press_e_stop() noexcept;
+  void drop_connection() noexcept;
   void check_reserved_bits(bool set) noexcept;
   void power_cycle() noexcept;
 

@@ -101,15 +101,18 @@ void MoveSequencer::complete_through(std::size_t count) noexcept {
   }
 }
 
-void MoveSequencer::discard_through(std::size_t count, const View& view) noexcept {
+// The robot dropped them by itself. `first_open`: the first of them is the one that the robot was at. It may have been
+// executed, or half of it, before its checkpoint was dropped; those behind it were not begun.
+void MoveSequencer::discard_through(std::size_t count, const View& view, bool first_open) noexcept {
   const std::uint16_t code = view.in.robot_status.error_code;
   const Reason reason = code != 0                         ? Reason::kRobotError
                         : safety_stop(view.in)            ? Reason::kSafetyStop
                         : !view.in.robot_status.activated ? Reason::kNotActivated
                                                           : Reason::kCleared;
-  const ReceiptState state = code != 0 ? ReceiptState::kAborted : ReceiptState::kDiscarded;
   for (; count > 0; --count) {
-    ledger_.report(awaiting_.front().ticket, state, reason, {.robot_error = code});
+    const bool begun = code != 0 || std::exchange(first_open, false);
+    ledger_.report(awaiting_.front().ticket, begun ? ReceiptState::kAborted : ReceiptState::kDiscarded, reason,
+                   {.robot_error = code});
     awaiting_.pop();
   }
 }
@@ -138,16 +141,16 @@ void MoveSequencer::reached(const View& view) noexcept {
   }
   // While the queue is being cleared on purpose, end_all() tells the reason.
   if (const std::size_t count = dropping_ ? 0 : awaited_through(m.checkpoint_discarded); count > 0) {
-    discard_through(count, view);
+    discard_through(count, view, true);
     // A command behind it whose own checkpoint was not sent yet is gone too, and its checkpoint would prove nothing.
     if (checkpoint_due_ && awaiting_.empty()) {
       awaiting_.push({*checkpoint_due_, 0});
       checkpoint_due_.reset();
-      discard_through(1, view);
+      discard_through(1, view, false);
     }
   }
   // The robot cleared its queue by itself, as a P-Stop can make it. Cleared falls when a command is queued (spec 5.4).
-  if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) discard_through(awaiting_.size(), view);
+  if (m.cleared && !dropping_ && fresh_since_echo_ >= kSettleImages) discard_through(awaiting_.size(), view, true);
   prove_by_rest(m);
 }
 
@@ -228,13 +231,19 @@ void MoveSequencer::withdraw(const std::optional<Flight>& open) noexcept {
 
 void MoveSequencer::end_all(ReceiptState sent, Reason reason, std::uint16_t robot_error) noexcept {
   const Detail detail{.robot_error = robot_error};
-  for (; !awaiting_.empty(); awaiting_.pop()) ledger_.report(awaiting_.front().ticket, sent, reason, detail);
-  if (checkpoint_due_) ledger_.report(*checkpoint_due_, sent, reason, detail);
+  // Where the robot stopped by itself, the first of them may have been executed before it did; those behind it were not
+  // begun.
+  bool open = sent == ReceiptState::kDiscarded && (reason == Reason::kLinkLost || reason == Reason::kSafetyStop);
+  const auto end = [&](const Ticket& ticket) {
+    ledger_.report(ticket, std::exchange(open, false) ? ReceiptState::kAborted : sent, reason, detail);
+  };
+  for (; !awaiting_.empty(); awaiting_.pop()) end(awaiting_.front().ticket);
+  if (checkpoint_due_) end(*checkpoint_due_);
   checkpoint_due_.reset();
-  if (withdrawn_) ledger_.report(withdrawn_->motion.ticket, sent, reason, detail);
+  if (withdrawn_) end(withdrawn_->motion.ticket);
   withdrawn_.reset();
   if (flight_) {
-    ledger_.report(flight_->motion.ticket, sent, reason, detail);
+    end(flight_->motion.ticket);
     withdraw(std::nullopt);
   }
   for (; !queue_.empty(); queue_.pop()) {

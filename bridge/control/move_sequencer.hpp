@@ -112,7 +112,7 @@ class MoveSequencer {
   void prove_by_rest(const image::MotionStatus& m) noexcept;
   void resolve_withdrawn(bool taken) noexcept;
   void complete_through(std::size_t count) noexcept;
-  void discard_through(std::size_t count, const View& view) noexcept;
+  void discard_through(std::size_t count, const View& view, bool first_open) noexcept;
   // SetPoint falls before the echo; the next images tell whether the robot took it. `open`: its end is still to be
   // told.
   void withdraw(const std::optional<Flight>& open) noexcept;

@@ -209,6 +209,10 @@ std::string safety_stop_text(const Receipt& r) {
   const std::string stop = "a safety stop is active; remove its cause, then ";
   const std::string reset = "press Reset on the power supply and activate";
   if (r.kind == CommandKind::kActivate) return stop + reset + " again";
+  if (r.kind == CommandKind::kMotion && r.state == ReceiptState::kAborted) {
+    return "a safety stop ended it, how far it got is not known; remove its cause, then resume (after an E-Stop: " +
+           reset + ")";
+  }
   return stop + "resume (after an E-Stop: " + reset + ")";
 }
 
@@ -284,6 +288,10 @@ std::string reason_text(const Receipt& r) {
     case Reason::kOwnerLost:
       return owner_lost_text(r);
     case Reason::kCleared:
+      if (r.kind == CommandKind::kMotion && r.state == ReceiptState::kAborted) {
+        return "the robot cleared its queue by itself; how far this one got is not known, look where the arm is before "
+               "sending it again";
+      }
       return "the motion queue was cleared; send it again if it is still wanted";
     case Reason::kNotAllowed:
       return not_allowed_text(r);

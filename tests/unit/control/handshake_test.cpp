@@ -176,14 +176,16 @@ TEST(Handshake, lets_a_clients_own_checkpoint_through_and_proves_completion_even
   EXPECT_OUTCOME(b.outcome(id), kCompleted, Reason::kNone);
 }
 
-TEST(Handshake, says_discarded_when_the_robot_discards_the_checkpoint) {
+// Of what the robot was at, a discarded checkpoint does not tell how far it got; what was behind it was not begun.
+TEST(Handshake, says_aborted_and_discarded_when_the_robot_discards_the_checkpoints) {
   Bench b;
   b.connect_ready();
   b.robot.executes = false;
-  const auto id = b.move(1);
+  const auto under_way = b.move(1), waiting = b.move(2);
   b.steps(10);
-  b.robot.in.motion_status.checkpoint_discarded = 7001;
-  EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kCleared);
+  b.robot.in.motion_status.checkpoint_discarded = 7002;
+  EXPECT_OUTCOME(b.outcome(under_way), kAborted, Reason::kCleared);
+  EXPECT_OUTCOME(b.outcome(waiting), kDiscarded, Reason::kCleared);
 }
 
 TEST(Handshake, ends_everything_truthfully_when_the_robot_fails) {

@@ -81,10 +81,11 @@ TEST_P(OnEveryFirmware, an_error_ends_commands_and_is_left_by_reset_and_resume) 
 TEST_P(OnEveryFirmware, a_p_stop_ends_commands_and_is_left_by_resume) {
   SimBench b(GetParam());
   b.make_ready();
-  const auto id = b.move(90);
+  const auto under_way = b.move(90), waiting = b.move(80);
   b.steps(200);
   b.model.press_p_stop2();
-  EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kSafetyStop);
+  EXPECT_OUTCOME(b.outcome(under_way), kAborted, Reason::kSafetyStop);
+  EXPECT_OUTCOME(b.outcome(waiting), kDiscarded, Reason::kSafetyStop);
   b.steps(1000);
   EXPECT_OUTCOME(b.outcome(kResumeMotion), kRejected, Reason::kSafetyStop);
   b.model.release_p_stop2();

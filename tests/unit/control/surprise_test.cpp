@@ -64,12 +64,13 @@ TEST(LostLink, stops_what_the_robot_is_still_doing_when_it_is_back) {
   Bench b;
   b.connect_ready();
   b.robot.executes = false;
-  const auto id = b.move(1);
+  const auto under_way = b.move(1), waiting = b.move(2);
   b.steps(10);
   b.link_up = false;
   b.steps(50);
   b.link_up = true;
-  EXPECT_OUTCOME(b.outcome(id), kDiscarded, Reason::kLinkLost);
+  EXPECT_OUTCOME(b.outcome(under_way), kAborted, Reason::kLinkLost);
+  EXPECT_OUTCOME(b.outcome(waiting), kDiscarded, Reason::kLinkLost);
   EXPECT_TRUE(b.out.motion_control.pause_motion);
 }
 
@@ -122,11 +123,12 @@ TEST(SafetyStop, empties_the_queue_and_waits_for_an_explicit_resume) {
   Bench b;
   b.connect_ready();
   b.robot.executes = false;
-  const auto in_robot = b.move(1);
+  const auto under_way = b.move(1), waiting = b.move(2);
   b.steps(10);
   b.robot.in.safety_status.stop.p_stop2 = b.robot.in.motion_status.p_stop2 = true;
   b.robot.in.motion_status.paused = true;
-  EXPECT_OUTCOME(b.outcome(in_robot), kDiscarded, Reason::kSafetyStop);
+  EXPECT_OUTCOME(b.outcome(under_way), kAborted, Reason::kSafetyStop);
+  EXPECT_OUTCOME(b.outcome(waiting), kDiscarded, Reason::kSafetyStop);
   b.robot.in.safety_status.resettable.p_stop2 = true;
   for (int i = 0; i < 300; ++i) {
     b.step();
