@@ -1,0 +1,115 @@
+// The robot's end of EtherNet/IP: an adapter with the identity and assemblies of a Meca500, as a machine without I/O
+// and stricter than adapters have to be. Bytes, events and time come in; bytes go out. No clock; allocates only in the
+// constructor and when a TCP connection is accepted.
+//
+// What it answers in odd cases follows the project's table of adapter behaviour (transports/ethernet_ip/README.md).
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "transports/ethernet_ip/cip.hpp"
+#include "transports/ethernet_ip/io_packet.hpp"
+#include "transports/ethernet_ip/originator.hpp"
+#include "transports/image/image.hpp"
+
+namespace meca::ethernet_ip {
+
+enum class AdapterKeyPolicy : std::uint8_t { kExact, kCompatibleSameMajor, kCompatibleAnyOlder, kOff };
+enum class OwnershipPolicy : std::uint8_t {
+  kReleaseOnTimeout,
+  kKeep,  // like some real adapters: after a time-out only the same originator (vendor, serial) may come back
+};
+
+struct AdapterSettings {
+  Identity identity;          // 1565 / 43 / 500, revision = firmware
+  std::uint32_t address = 0;  // own IPv4, host byte order
+  std::uint32_t netmask = 0xFFFFFF00;
+  AdapterKeyPolicy key_policy = AdapterKeyPolicy::kCompatibleSameMajor;
+  OwnershipPolicy ownership = OwnershipPolicy::kReleaseOnTimeout;
+  bool lenient_rpi = false;  // false: 10 ms to 10 s as the EDS says
+  bool socket_items = true;  // socket address items in Forward Open replies
+};
+
+// Faults on request; everything off is a healthy robot. Each acts from the moment it is set.
+struct AdapterFaults {
+  std::optional<std::uint16_t> refuse_open;      // extended status of every Forward Open
+  std::optional<std::uint16_t> wrong_size;       // accept only this T->O size (0x0128 with it otherwise)
+  std::optional<std::uint32_t> api_us;           // API of both directions, whatever RPI was asked
+  std::optional<SocketAddress> foreign_address;  // T->O/O->T socket address items point there
+  bool stop_producing = false;                   // connection open, no T->O
+  bool duplicate = false;                        // every T->O packet twice
+  bool stale_sequence = false;                   // every second packet carries an old sequence number
+  bool corrupt = false;                          // T->O packets of a wrong length
+  bool frozen_count = false;                     // the sequence count of class 1 stands still: no new data
+};
+
+// What a test or a person may want to know; monotonic.
+struct AdapterCounters {
+  std::uint64_t consumed = 0, produced = 0;  // I/O packets taken, sent
+  std::uint64_t stale = 0, repeated = 0, foreign = 0, malformed = 0, idle = 0;
+  std::uint64_t opens = 0, refusals = 0, closes = 0, timeouts = 0;
+  std::uint64_t sessions = 0, discarded = 0;  // encapsulation messages discarded (options, no session, ...)
+};
+
+class Adapter {
+ public:
+  explicit Adapter(const AdapterSettings& settings);
+  ~Adapter();
+  Adapter(Adapter&&) noexcept;
+  Adapter& operator=(Adapter&&) noexcept;
+
+  static constexpr std::size_t kMostConnections = 8;  // of TCP; the owner refuses more
+
+  // ---- TCP 44818. `id`: chosen by the owner, below kMostConnections.
+  void tcp_accepted(std::size_t id, std::uint32_t peer_ipv4, Time now);
+  void tcp_closed(std::size_t id, Time now) noexcept;  // I/O goes on
+  void tcp_received(std::size_t id, Bytes bytes, Time now) noexcept;
+  Bytes tcp_output(std::size_t id) const noexcept;
+  void tcp_sent(std::size_t id, std::size_t count) noexcept;
+  bool wants_closed(std::size_t id) const noexcept;  // the owner closes when everything has been sent
+
+  // ---- UDP 44818: ListIdentity, ListServices; everything else is not answered. Empty: no answer.
+  // `delay`: a broadcast is answered after a random part of what the asker allows; the owner waits for it.
+  struct Answer {
+    Bytes bytes;  // until the next call
+    Time delay{};
+  };
+  Answer udp_received(Bytes datagram, bool broadcast) noexcept;
+
+  // ---- UDP 2222
+  void io_received(const SocketAddress& from, Bytes datagram, Time now) noexcept;
+  // The next T->O packet when one is due, else empty; call until empty. Absolute deadlines, no bursts.
+  struct Datagram {
+    SocketAddress to;  // unicast, or a group
+    bool multicast = false;
+    Bytes bytes;  // until the next call
+  };
+  std::optional<Datagram> produce(Time now) noexcept;
+  std::optional<Time> next_event() const noexcept;  // when produce() or tick() has something to do
+  void tick(Time now) noexcept;                     // watchdogs
+
+  // ---- The robot behind it
+  void set_input(const image::InputBytes& input) noexcept;  // what T->O carries from now on
+  // The outputs of the owner: valid while it is connected and says run; fresh once for every new packet.
+  bool connected() const noexcept;
+  bool run() const noexcept;
+  bool take_fresh() noexcept;
+  const image::OutputBytes& output() const noexcept;
+
+  // ---- Faults, and what only a fault can do
+  AdapterFaults& faults() noexcept;
+  void close_tcp_connections() noexcept;  // as a device that tidies up would
+  void power_cycle() noexcept;            // everything is forgotten, ownership too; nothing is sent any more
+  const AdapterCounters& counters() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace meca::ethernet_ip
