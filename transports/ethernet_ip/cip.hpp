@@ -89,9 +89,9 @@ enum class GeneralStatus : std::uint8_t {
 };
 
 struct Reply {
-  static constexpr std::size_t kMostExtended = 4;
-  std::uint8_t service = 0;  // of the request, without the reply bit
-  std::uint8_t general = 0;  // a GeneralStatus
+  static constexpr std::size_t kMostExtended = 6;  // of 0x0112, the longest
+  std::uint8_t service = 0;                        // of the request, without the reply bit
+  std::uint8_t general = 0;                        // a GeneralStatus
   std::array<std::uint16_t, kMostExtended> extended{};
   std::size_t extended_count = 0;  // more on the wire are passed over
   Bytes data;
