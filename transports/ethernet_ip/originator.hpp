@@ -46,7 +46,7 @@ struct OriginatorSettings {
   std::uint16_t vendor_id = 0;        // ours; with the serial number the owner of the robot's outputs
   std::uint32_t serial_number = 0;  // ours; the same after a restart, so that a robot that kept our ownership knows us
   std::uint16_t incarnation = 0;    // upper half of the connection ids we choose: random, so that packets of an earlier
-                                    // life are not taken for ours (CIP Vol 2 calls it so too)
+                                    // life are not taken for ours
   std::uint32_t address = 0;        // the robot's IPv4, host byte order
   std::uint16_t io_port = kIoPort;  // where we listen; not 2222: told to the robot by a socket address item
   Time reply_timeout = std::chrono::seconds(2);          // TCP connect, and each explicit reply

@@ -33,7 +33,7 @@ void Originator::run(const ForwardOpenReply& reply, Time now) noexcept {
   watchdog_at_ = now + std::max(settings_.first_packet_timeout, watchdog());
 }
 
-// CIP Vol 1, 3-4.4.6: actual packet interval x multiplier; the receiver watches.
+// Actual packet interval x multiplier, for the receiver to watch; the interval that was asked does not count.
 Time Originator::watchdog() const noexcept {
   return microseconds(t_to_o_api_us_) * timeout_multiplier(settings_.multiplier_code);
 }

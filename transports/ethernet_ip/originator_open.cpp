@@ -44,7 +44,7 @@ void Originator::send_register_session(Time now) noexcept {
 
 void Originator::send_unregister_session() noexcept { send_encapsulated(Command::kUnregisterSession, {}); }
 
-// `with_own_port`: tells where T->O shall be sent to (CIP Vol 2, 3-3.9: address 0, the sender's own).
+// `with_own_port`: tells where T->O shall be sent to (address 0: the sender's own).
 void Originator::send_unconnected(Bytes message, bool with_own_port) noexcept {
   std::array<std::byte, kMostMessage + 64> bytes{};
   wire::Writer out(bytes);
@@ -141,7 +141,7 @@ void Originator::oversized(std::size_t size, Time now) noexcept {
 void Originator::message_received(const Header& header, Bytes data, Time now) noexcept {
   const bool registering = pending_ == Pending::kRegisterSession;
   const Command expected = registering ? Command::kRegisterSession : Command::kSendRrData;
-  // Unasked, late, NOP, or one that is to be discarded (CIP Vol 2, 2-3.6).
+  // Unasked, late, NOP, or one that is to be discarded.
   if (pending_ == Pending::kNothing || header.options != 0) return;
   if (header.command != static_cast<std::uint16_t>(expected)) return;
   if (header.status != 0) {

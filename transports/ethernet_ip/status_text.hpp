@@ -33,7 +33,8 @@ struct StatusText {
   std::string_view remedy;   // empty: nothing that a person could do
 };
 
-// CIP Vol 1, appendix B (general) and 3-5.6 (extended, of general status 0x01). In the order of their codes.
+// General status: CIP Vol 1, appendix B. Extended status: of the Connection Manager, behind general status 0x01. In the
+// order of their codes.
 std::span<const StatusText> general_status_texts() noexcept;
 std::span<const StatusText> extended_status_texts() noexcept;
 // nullptr: a status that no document of ours names.
