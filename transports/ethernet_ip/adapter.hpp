@@ -1,8 +1,8 @@
 // The robot's end of EtherNet/IP: an adapter with the identity and assemblies of a Meca500, as a machine without I/O
 // and stricter than adapters have to be. Bytes, events and time come in; bytes go out. No clock; allocates only in the
-// constructor and when a TCP connection is accepted.
+// constructor.
 //
-// What it answers in odd cases follows the project's table of adapter behaviour (transports/ethernet_ip/README.md).
+// What it answers in odd cases, and what of that is inferred: transports/ethernet_ip/README.md.
 #pragma once
 
 #include <array>
@@ -19,7 +19,15 @@
 
 namespace meca::ethernet_ip {
 
-enum class AdapterKeyPolicy : std::uint8_t { kExact, kCompatibleSameMajor, kCompatibleAnyOlder, kOff };
+struct AdapterState;
+
+// Which electronic keys open a connection. A key without the compatibility bit always means this very revision.
+enum class AdapterKeyPolicy : std::uint8_t {
+  kExact,                // a compatible key is read as an exact one
+  kCompatibleSameMajor,  // a compatible key may name an older minor revision
+  kCompatibleAnyOlder,   // a compatible key may name any older revision
+  kOff,                  // keys are not looked at
+};
 enum class OwnershipPolicy : std::uint8_t {
   kReleaseOnTimeout,
   kKeep,  // like some real adapters: after a time-out only the same originator (vendor, serial) may come back
@@ -31,16 +39,20 @@ struct AdapterSettings {
   std::uint32_t netmask = 0xFFFFFF00;
   AdapterKeyPolicy key_policy = AdapterKeyPolicy::kCompatibleSameMajor;
   OwnershipPolicy ownership = OwnershipPolicy::kReleaseOnTimeout;
-  bool lenient_rpi = false;  // false: 10 ms to 10 s as the EDS says
-  bool socket_items = true;  // socket address items in Forward Open replies
+  bool lenient_rpi = false;  // false: 10 ms to 10 s as the EDS says; true: 1 ms and more
+  // Socket address items in Forward Open replies. The group of a multicast connection is told in any case: nobody could
+  // find it otherwise.
+  bool socket_items = true;
+  // TCP/IP Interface object, attribute 13: a TCP connection silent for so long is closed. 0: never.
+  std::chrono::seconds inactivity_timeout{120};
 };
 
 // Faults on request; everything off is a healthy robot. Each acts from the moment it is set.
 struct AdapterFaults {
-  std::optional<std::uint16_t> refuse_open;      // extended status of every Forward Open
-  std::optional<std::uint16_t> wrong_size;       // accept only this T->O size (0x0128 with it otherwise)
-  std::optional<std::uint32_t> api_us;           // API of both directions, whatever RPI was asked
-  std::optional<SocketAddress> foreign_address;  // T->O/O->T socket address items point there
+  std::optional<std::uint16_t> refuse_open;  // extended status of every Forward Open
+  std::optional<std::uint16_t> wrong_size;   // accept only this T->O size (0x0128 with it otherwise)
+  std::optional<std::uint32_t> api_us;       // API of both directions, whatever RPI was asked; at least 1 ms is kept
+  std::optional<SocketAddress> foreign_address;  // what the socket address items say; T->O goes where it always goes
   bool stop_producing = false;                   // connection open, no T->O
   bool duplicate = false;                        // every T->O packet twice
   bool stale_sequence = false;                   // every second packet carries an old sequence number
@@ -50,10 +62,16 @@ struct AdapterFaults {
 
 // What a test or a person may want to know; monotonic.
 struct AdapterCounters {
-  std::uint64_t consumed = 0, produced = 0;  // I/O packets taken, sent
-  std::uint64_t stale = 0, repeated = 0, foreign = 0, malformed = 0, idle = 0;
-  std::uint64_t opens = 0, refusals = 0, closes = 0, timeouts = 0;
-  std::uint64_t sessions = 0, discarded = 0;  // encapsulation messages discarded (options, no session, ...)
+  std::uint64_t consumed = 0;   // O->T packets with new data, run or idle
+  std::uint64_t produced = 0;   // T->O packets, those that a fault spoils or repeats among them
+  std::uint64_t stale = 0;      // O->T of an old encapsulation sequence: dropped, do not feed the watchdog
+  std::uint64_t repeated = 0;   // O->T of a sequence count that is not newer: alive, no new data
+  std::uint64_t foreign = 0;    // O->T of another connection id, or from another address than the opener's
+  std::uint64_t malformed = 0;  // O->T of a wrong form or length
+  std::uint64_t idle = 0;       // of `consumed`
+  std::uint64_t opens = 0, refusals = 0, closes = 0, timeouts = 0;  // of connections
+  std::uint64_t sessions = 0;                                       // registered
+  std::uint64_t discarded = 0;  // encapsulation messages without an answer (options, status, session, command over UDP)
 };
 
 class Adapter {
@@ -66,7 +84,7 @@ class Adapter {
   static constexpr std::size_t kMostConnections = 8;  // of TCP; the owner refuses more
 
   // ---- TCP 44818. `id`: chosen by the owner, below kMostConnections.
-  void tcp_accepted(std::size_t id, std::uint32_t peer_ipv4, Time now);
+  void tcp_accepted(std::size_t id, std::uint32_t peer_ipv4, Time now) noexcept;
   void tcp_closed(std::size_t id, Time now) noexcept;  // I/O goes on
   void tcp_received(std::size_t id, Bytes bytes, Time now) noexcept;
   Bytes tcp_output(std::size_t id) const noexcept;
@@ -95,7 +113,7 @@ class Adapter {
 
   // ---- The robot behind it
   void set_input(const image::InputBytes& input) noexcept;  // what T->O carries from now on
-  // The outputs of the owner: valid while it is connected and says run; fresh once for every new packet.
+  // The outputs of the owner: valid while it is connected and says run; fresh once for every new packet that says run.
   bool connected() const noexcept;
   bool run() const noexcept;
   bool take_fresh() noexcept;
@@ -104,12 +122,13 @@ class Adapter {
   // ---- Faults, and what only a fault can do
   AdapterFaults& faults() noexcept;
   void close_tcp_connections() noexcept;  // as a device that tidies up would
-  void power_cycle() noexcept;            // everything is forgotten, ownership too; nothing is sent any more
+  // Sessions, connection and ownership are forgotten, and nothing is sent any more. Settings, faults, counters and the
+  // robot's input stay: they are not the adapter's memory.
+  void power_cycle() noexcept;
   const AdapterCounters& counters() const noexcept;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<AdapterState> state_;
 };
 
 }  // namespace meca::ethernet_ip

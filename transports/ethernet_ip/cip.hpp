@@ -85,6 +85,7 @@ enum class GeneralStatus : std::uint8_t {
   kNotEnoughData = 0x13,
   kAttributeNotSupported = 0x14,
   kTooMuchData = 0x15,
+  kKeyFailureInPath = 0x25,
   kVendorSpecific = 0xFF,
 };
 

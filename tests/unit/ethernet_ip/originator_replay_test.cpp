@@ -37,7 +37,7 @@ class Replay : public Rig {
   }
 };
 
-TEST(Replay, OfPointToPointWithOpenerRunsAndCloses) {  // meca1
+TEST(OriginatorReplay, OfPointToPointWithOpenerRunsAndCloses) {  // meca1
   Replay rig(recorded(0x1234, 0x6B02695B, 0xDC2D), 1, golden::kOpenReply);
   ASSERT_EQ(rig.machine.state(), State::kRunning) << rig.machine.trouble();
   const auto sent = rig.produce();
@@ -55,7 +55,7 @@ TEST(Replay, OfPointToPointWithOpenerRunsAndCloses) {  // meca1
   EXPECT_EQ(to_hex(rig.take_output()), golden::kUnregisterRequest);
 }
 
-TEST(Replay, OfMulticastJoinsTheRecordedGroup) {  // eeip
+TEST(OriginatorReplay, OfMulticastJoinsTheRecordedGroup) {  // eeip
   auto settings = recorded(0x00FF, 0xFFFFFFFF);
   settings.multicast = true;
   Replay rig(settings, 0x7C92, golden::kMulticastOpenReply);
@@ -66,7 +66,7 @@ TEST(Replay, OfMulticastJoinsTheRecordedGroup) {  // eeip
   EXPECT_TRUE(rig.machine.running());
 }
 
-TEST(Replay, OfTheVendorsForwardOpenRuns) {  // vendor, frames 36 and 37
+TEST(OriginatorReplay, OfTheVendorsForwardOpenRuns) {  // vendor, frames 36 and 37
   auto settings = recorded(0x0BAD, 0x51515151);
   settings.multicast = true;
   settings.o_to_t_rpi_us = settings.t_to_o_rpi_us = 50'000;
@@ -79,7 +79,7 @@ TEST(Replay, OfTheVendorsForwardOpenRuns) {  // vendor, frames 36 and 37
   EXPECT_EQ(rig.machine.group(), 0xEFC00140u);
 }
 
-TEST(Replay, OfAKeyOfOlderFirmwareIsRefusedInWords) {  // vendor, frames 8 and 9
+TEST(OriginatorReplay, OfAKeyOfOlderFirmwareIsRefusedInWords) {  // vendor, frames 8 and 9
   auto settings = recorded(0x0BAD, 0x51515151);
   settings.key = KeyPolicy::kCompatible;
   settings.major = 10;
@@ -90,13 +90,13 @@ TEST(Replay, OfAKeyOfOlderFirmwareIsRefusedInWords) {  // vendor, frames 8 and 9
             "not fit; correct the key's revision, or set the key to none");
 }
 
-TEST(Replay, OfARobotThatBelongsToAnotherIsRefusedInWords) {  // wd2, frame 226
+TEST(OriginatorReplay, OfARobotThatBelongsToAnotherIsRefusedInWords) {  // wd2, frame 226
   Replay rig(recorded(0x0BAD, 0x51515158), 0x13D6, golden::kOwnedRefused);
   EXPECT_NE(rig.machine.trouble().find("(0x01/0x0106): another controller owns"), std::string_view::npos)
       << rig.machine.trouble();
 }
 
-TEST(Replay, OfInputsWithARunIdleHeaderIsRefusedInWords) {  // hdr: 258 bytes where 254 are agreed
+TEST(OriginatorReplay, OfInputsWithARunIdleHeaderIsRefusedInWords) {  // hdr: 258 bytes where 254 are agreed
   Replay rig(recorded(1, 1, 0xF8E6), 1, golden::kHeaderOpenReply);
   ASSERT_EQ(rig.machine.state(), State::kRunning) << rig.machine.trouble();
   EXPECT_TRUE(rig.receive_recorded(golden::kHeaderInputPacket1, 276));
@@ -107,7 +107,7 @@ TEST(Replay, OfInputsWithARunIdleHeaderIsRefusedInWords) {  // hdr: 258 bytes wh
       << rig.machine.trouble();
 }
 
-TEST(Replay, OfAnyAnswerCutAnywhereIsQuiet) {
+TEST(OriginatorReplay, OfAnyAnswerCutAnywhereIsQuiet) {
   for (const auto answer : golden::kMessages) {
     const auto whole = from_hex(answer);
     for (std::size_t size = 0; size < whole.size(); ++size) {
