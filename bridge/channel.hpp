@@ -21,11 +21,11 @@ struct ReceiptEvent {
 // What the reader side has to say itself: the receipt of a command that never reached a robot's inbox, and a sentence
 // for the log.
 struct ReaderEvent {
-  control::FixedString<63> robot;  // as the client wrote it
+  FixedText<63> robot;  // as the client wrote it
   bool has_receipt = false;
   control::Receipt receipt;
-  control::FixedString<255> text;      // of the receipt; empty: the sentence of control::describe()
-  control::FixedString<255> log_line;  // empty: none
+  FixedText<255> text;      // of the receipt; empty: the sentence of control::describe()
+  FixedText<255> log_line;  // empty: none
   std::int64_t unix_ns = 0;
 };
 

@@ -89,6 +89,7 @@ void Cycle::State::fill(CycleRecord& record, const transports::Exchange& exchang
   record.quality = quality(exchange, stamp);
   record.link = exchange.link;
   record.link_detail = exchange.link_detail;
+  record.transport_counters = exchange.counters;
   record.firmware_known = firmware.known();
   record.firmware_mismatch = firmware.mismatch();
   record.firmware = firmware.version();

@@ -54,7 +54,8 @@ struct CycleRecord {
   std::int64_t receive_unix_ns = 0;  // of the image in `inputs`
   Quality quality = Quality::kDisconnected;
   transports::LinkState link = transports::LinkState::kDown;
-  std::string_view link_detail;  // static text
+  transports::LinkDetail link_detail;
+  std::array<std::int64_t, transports::kMostCounters> transport_counters{};  // of Transport::counters()
   bool firmware_known = false;
   bool firmware_mismatch = false;  // the robot reports another layout than the configuration expects
   transports::FirmwareVersion firmware;

@@ -53,7 +53,7 @@ Finding monitoring_by_configuration(const CycleRecord& record) {
 }
 
 Finding link(const CycleRecord& record) {
-  const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail);
+  const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail.view());
   switch (record.link) {
     case transports::LinkState::kUp:
       break;

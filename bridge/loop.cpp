@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 namespace meca::bridge {
 namespace {
@@ -49,7 +50,27 @@ BusGroup::BusGroup(std::vector<LoopBus> buses) {
 void BusGroup::run(Stamp stamp, Ending ending) noexcept {
   for (auto& bus : buses_) {
     bus.transport->exchange(stamp.now, bus.exchanges);
-    for (std::size_t i = 0; i < bus.robots.size(); ++i) step(bus.robots[i], bus.exchanges[i], stamp, ending);
+    for (std::size_t i = 0; i < bus.robots.size(); ++i) {
+      Robot& robot = bus.robots[i];
+      const bool had_its_step = std::exchange(robot.stepped, false) && !bus.exchanges[i].fresh && ending == robot.told;
+      if (!had_its_step) step(robot, bus.exchanges[i], stamp, ending);
+    }
+  }
+}
+
+transports::Transport::Woke BusGroup::wait(Time deadline) noexcept {
+  return buses_.size() == 1 ? buses_.front().transport->wait(deadline) : transports::Transport::Woke::kCannotWait;
+}
+
+void BusGroup::run_arrived(Stamp stamp) noexcept {
+  for (auto& bus : buses_) {
+    bus.transport->exchange(stamp.now, bus.exchanges);
+    for (std::size_t i = 0; i < bus.robots.size(); ++i) {
+      Robot& robot = bus.robots[i];
+      if (!bus.exchanges[i].fresh) continue;
+      step(robot, bus.exchanges[i], stamp, robot.told);
+      robot.stepped = true;
+    }
   }
 }
 
@@ -142,6 +163,21 @@ void Loop::share_pace(const PaceFacts& facts) noexcept {
   lateness_mean_us_.store(facts.lateness_mean_us, std::memory_order_relaxed);
 }
 
+void Loop::wait_for(Time deadline) noexcept {
+  using Woke = transports::Transport::Woke;
+  for (;;) {
+    switch (group_.wait(deadline)) {
+      case Woke::kCannotWait:
+        return sleep_until(deadline);
+      case Woke::kDeadline:
+        return;
+      case Woke::kArrival:
+        group_.run_arrived(stamp());
+        wakeup_.notify();
+    }
+  }
+}
+
 void Loop::run(std::promise<std::vector<std::string>> ready) {
   ready.set_value(make_thread_realtime(realtime_));
   Pacer pacer(cycle_, monotonic() + cycle_);
@@ -150,7 +186,7 @@ void Loop::run(std::promise<std::vector<std::string>> ready) {
   const auto patience = std::max<std::int64_t>(kStopCyclesAtLeast, kStopPatience / cycle_);
   Ending ending = Ending::kNone;
   for (std::int64_t stopping = 0; ending != Ending::kGiveUp && !(stopping >= stop_cycles && group_.finished());) {
-    sleep_until(pacer.deadline());
+    wait_for(pacer.deadline());
     pacer.woke(monotonic());
     if (stop_requested_.load()) ending = ++stopping < patience ? Ending::kStop : Ending::kGiveUp;
     group_.run(stamp(), ending);

@@ -38,6 +38,10 @@ class BusGroup {
   enum class Ending : std::uint8_t { kNone, kStop, kGiveUp };
   // Exchanges every bus, steps every robot. kStop: every Cycle is told to stop its robot; kGiveUp: to wait for nothing.
   void run(Stamp stamp, Ending ending) noexcept;
+  // Between two rounds: a bus of its own may wait by itself (see Transport::wait).
+  transports::Transport::Woke wait(Time deadline) noexcept;
+  // Something arrived before the next round: steps the robots that it concerns, in place of that round's step.
+  void run_arrived(Stamp stamp) noexcept;
   // After kStop: every robot has stopped and every command has its end.
   bool finished() const noexcept;
 
@@ -51,6 +55,7 @@ class BusGroup {
     RobotChannel* channel;
     std::unique_ptr<StepResult> result = std::make_unique<StepResult>();
     Ending told = Ending::kNone;
+    bool stepped = false;  // by run_arrived() since the last round
   };
   struct Bus {
     std::unique_ptr<transports::Transport> transport;
@@ -85,6 +90,7 @@ class Loop {
 
  private:
   void run(std::promise<std::vector<std::string>> ready);
+  void wait_for(Time deadline) noexcept;
   void share_pace(const PaceFacts& facts) noexcept;
 
   BusGroup group_;

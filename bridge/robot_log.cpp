@@ -47,7 +47,7 @@ void RobotLog::look(const CycleRecord& record, Time now, std::vector<LogLine>& l
 
 void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
   if (record.link != link_ || first_) {
-    const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail);
+    const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail.view());
     if (record.link == LinkState::kUp) {
       say(kLinkUp, Level::kInfo, "link up", now, lines);
     } else if (link_ == LinkState::kUp) {

@@ -16,6 +16,7 @@ class FixedText {
   constexpr FixedText(std::string_view text) noexcept : size_(std::min(text.size(), N)) {
     std::copy_n(text.data(), size_, bytes_.data());
   }
+  constexpr FixedText(const char* text) noexcept : FixedText(std::string_view(text)) {}
   // printf; what does not fit is cut.
   template <class... Arguments>
   static FixedText format(const char* format, Arguments... arguments) noexcept {

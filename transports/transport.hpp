@@ -2,6 +2,7 @@
 // A transport knows bytes and links; it knows nothing of DDS, YAML or the meaning of the image.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <string_view>
 
 #include "transports/image/image.hpp"
+#include "transports/text.hpp"
 
 namespace meca::transports {
 
@@ -26,6 +28,16 @@ struct FirmwareVersion {
   friend auto operator<=>(const FirmwareVersion&, const FirmwareVersion&) = default;
 };
 
+// Why a link is not up, a sentence without full stop.
+using LinkDetail = FixedText<255>;
+
+// What a bus counts or measures of each robot's connection, by name; how many there may be.
+struct CounterInfo {
+  std::string_view name;  // "lost_packets": [a-z_0-9], at most 31 characters
+  std::string_view unit;  // "", "us", "ns"
+};
+inline constexpr std::size_t kMostCounters = 32;
+
 // One robot's side of one exchange. The loop owns one per robot; the transport fills the input half.
 struct Exchange {
   // host -> robot, written by the loop before exchange()
@@ -37,8 +49,8 @@ struct Exchange {
   bool fresh = false;  // `input` arrived since the last exchange
   LinkState link = LinkState::kDown;
   FirmwareVersion identity{};  // from the protocol's identity, where it has one (EtherNet/IP); else unknown
-  // First words of why the link is not up; points at a string literal, never null-terminated guesses.
-  std::string_view link_detail{};
+  LinkDetail link_detail{};
+  std::array<std::int64_t, kMostCounters> counters{};  // in the order of Transport::counters()
 };
 
 class Transport {
@@ -54,6 +66,15 @@ class Transport {
   // One bus cycle for every robot, in the order of the configuration. Called from the cycle thread only:
   // does not allocate, lock, log or throw; never blocks longer than the bus needs for one frame.
   virtual void exchange(Time now, std::span<Exchange> robots) noexcept = 0;
+
+  // A bus whose frames arrive and are due by themselves waits in the loop's place: until the deadline, or until there
+  // is something for exchange() to fetch. Meanwhile it sends what is due, from the outputs that stand in the exchanges
+  // of the last exchange(), which live as long as the bus is used. Same rules as for exchange().
+  enum class Woke : std::uint8_t { kCannotWait, kDeadline, kArrival };
+  virtual Woke wait(Time) noexcept { return Woke::kCannotWait; }
+
+  // What stands in Exchange::counters; at most kMostCounters.
+  virtual std::span<const CounterInfo> counters() const noexcept { return {}; }
 
   // The protocol's orderly good-bye (EtherCAT to INIT, Forward Close, PROFINET Release). Bounded in time.
   virtual void close() noexcept = 0;

@@ -3,34 +3,17 @@
 // the names mirror idl/control.idl.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <variant>
 
+#include "transports/text.hpp"
+
 namespace meca::control {
 
-template <std::size_t N>
-class FixedString {
- public:
-  constexpr FixedString() = default;
-  // Longer text is cut at N bytes; whoever lets outside text in checks its length first.
-  constexpr FixedString(std::string_view text) noexcept : size_(std::min(text.size(), N)) {
-    std::copy_n(text.data(), size_, data_.data());
-  }
-  constexpr operator std::string_view() const noexcept { return {data_.data(), size_}; }
-  constexpr std::string_view view() const noexcept { return *this; }
-  constexpr bool empty() const noexcept { return size_ == 0; }
-  friend constexpr bool operator==(const FixedString& a, const FixedString& b) noexcept { return a.view() == b.view(); }
-
- private:
-  std::array<char, N> data_{};
-  std::size_t size_ = 0;
-};
-
-using ClientName = FixedString<63>;
+using ClientName = FixedText<63>;  // longer text is cut; whoever lets outside text in checks its length first
 using ParticipantId = std::array<std::byte, 12>;  // DDS GUID prefix: which participant wrote the sample
 
 enum class CommandKind : std::uint8_t {

@@ -388,7 +388,7 @@ TEST(Diagnosis, CutsWhatIsLongerThanBridgeStatusHoldsAndNoCharacterInHalf) {
   static const std::string kLong = std::string(229, 'x') + "\xC3\xA4\xC3\xA4\xC3\xA4";  // ä is two bytes
   CycleRecord record = moving_robot();
   record.link = LinkState::kDown;
-  record.link_detail = kLong;
+  record.link_detail = std::string_view(kLong);
   const std::string cause = bridge::diagnose(record).cause;
   EXPECT_EQ(cause, "no link to the robot: " + kLong.substr(0, 229) + "...") << cause.size();
   record.link_detail = std::string_view(kLong).substr(1);
