@@ -297,6 +297,13 @@ void fill(const CycleRecord& record, const Diagnosis& diagnosis, const StatusFac
   sample.records_dropped(facts.records_dropped);
   sample.commands_received(record.counters.commands_received);
   sample.commands_rejected(record.counters.commands_rejected);
+  sample.transport_counters().resize(facts.counters.size());
+  for (std::size_t i = 0; i < facts.counters.size(); ++i) {
+    meca500::TransportCounter& counter = sample.transport_counters()[i];
+    set_text(counter.name(), facts.counters[i].name);
+    set_text(counter.unit(), facts.counters[i].unit);
+    counter.value(record.transport_counters[i]);
+  }
 }
 
 std::string to_string(const control::ParticipantId& id) {

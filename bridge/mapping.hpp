@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -66,6 +67,7 @@ struct StatusFacts {
   std::uint64_t missed_cycles = 0, records_dropped = 0;
   std::uint32_t wakeup_lateness_max_us = 0, wakeup_lateness_mean_us = 0;
   std::int64_t unix_ns = 0;
+  std::span<const transports::CounterInfo> counters{};  // what CycleRecord::transport_counters hold
 };
 void fill(const CycleRecord& record, const Diagnosis& diagnosis, const StatusFacts& facts,
           meca500::BridgeStatus& sample);

@@ -70,7 +70,8 @@ void Publisher::drain_records(Robot& robot, Time now, std::int64_t unix_ns) {
                           .records_dropped = channel.records_dropped.load(std::memory_order_relaxed),
                           .wakeup_lateness_max_us = pace.lateness_max_us,
                           .wakeup_lateness_mean_us = pace.lateness_mean_us,
-                          .unix_ns = unix_ns};
+                          .unix_ns = unix_ns,
+                          .counters = robot.facts.counters};
   // At most one queue full per round: a loop faster than DDS must not keep the other robots waiting.
   for (std::size_t i = 0; i < channel.records.capacity(); ++i) {
     const CycleRecord* record = channel.records.front();

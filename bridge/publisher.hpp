@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,7 +23,8 @@ struct PublishedRobot {
   RobotChannel* channel = nullptr;  // outlives the publisher
   std::string transport;            // "builtin", ...
   Time cycle{};
-  std::function<PaceFacts()> pace;  // of the loop that owns the robot
+  std::function<PaceFacts()> pace;                      // of the loop that owns the robot
+  std::span<const transports::CounterInfo> counters{};  // of its bus
 };
 
 class Publisher {

@@ -160,6 +160,11 @@ Json to_json(const meca500::DynamicData& s) {
 }
 
 Json to_json(const meca500::BridgeStatus& s) {
+  Json counters = Json::object();
+  for (const auto& counter : s.transport_counters()) {
+    const std::string unit = counter.unit().c_str();
+    counters[counter.name().c_str() + (unit.empty() ? "" : "_" + unit)] = counter.value();
+  }
   return {{"robot", s.robot().c_str()},
           {"time_ns", s.time_ns()},
           {"bridge_version", s.bridge_version().c_str()},
@@ -184,7 +189,8 @@ Json to_json(const meca500::BridgeStatus& s) {
           {"wakeup_lateness_mean_us", s.wakeup_lateness_mean_us()},
           {"records_dropped", s.records_dropped()},
           {"commands_received", s.commands_received()},
-          {"commands_rejected", s.commands_rejected()}};
+          {"commands_rejected", s.commands_rejected()},
+          {"transport_counters", std::move(counters)}};
 }
 
 Json to_json(const meca500::ControlStatus& s) {

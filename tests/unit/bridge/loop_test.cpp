@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 // What the bus saw, for the test that outlives it.
 struct Seen {
   int exchanges = 0;
+  std::vector<bool> fresh;  // by robot; where it ends, true
+  transports::Transport::Woke woke = transports::Transport::Woke::kCannotWait;
   bool closed = false;
   bool set_point_at_close = true;
   bool pause_at_close = false;
@@ -29,14 +31,16 @@ class ScriptedBus final : public transports::Transport {
   void open(Time) override {}
   void exchange(Time, std::span<transports::Exchange> robots) noexcept override {
     ++seen_.exchanges;
-    for (auto& robot : robots) {
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      auto& robot = robots[i];
       last_ = image::decode_outputs(robot.output, {});
-      robot.fresh = true;
+      robot.fresh = i >= seen_.fresh.size() || seen_.fresh[i];
       robot.link = transports::LinkState::kUp;
       robot.identity = {11, 3, 0, 1};
       image::encode_inputs(inputs_, {}, robot.input);
     }
   }
+  Woke wait(transports::Time) noexcept override { return seen_.woke; }
   void close() noexcept override {
     seen_.closed = true;
     seen_.set_point_at_close = last_.motion_control.set_point;
@@ -88,6 +92,44 @@ TEST_F(BusGroupTest, EveryRobotOfEveryBusGetsOneRecordPerRound) {
   EXPECT_EQ(other.exchanges, 3);
   EXPECT_EQ(arm1_.records.size(), 3U);
   EXPECT_EQ(arm2_.records.size(), 3U);
+}
+
+TEST_F(BusGroupTest, AnImageThatArrivesBetweenTwoRoundsHasItsStepAtOnceInPlaceOfTheNextRounds) {
+  auto group = this->group({&arm1_, &arm2_});
+  seen_.fresh = {true, false};  // the second robot's image is late
+  group.run_arrived(next());
+  EXPECT_EQ(arm1_.records.size(), 1U);
+  EXPECT_EQ(arm2_.records.size(), 0U);
+  seen_.fresh = {false, false};
+  group.run(next(), BusGroup::Ending::kNone);
+  EXPECT_EQ(arm1_.records.size(), 1U);
+  EXPECT_EQ(arm2_.records.size(), 1U);  // a cycle without an image is a cycle
+  group.run(next(), BusGroup::Ending::kNone);
+  EXPECT_EQ(arm1_.records.size(), 2U);
+}
+
+TEST_F(BusGroupTest, ARobotThatHadItsStepStillHearsThatItIsToStop) {
+  auto group = this->group({&arm1_});
+  for (int i = 0; i < 5; ++i) group.run(next(), BusGroup::Ending::kNone);
+  group.run_arrived(next());
+  seen_.fresh = {false};
+  group.run(next(), BusGroup::Ending::kStop);
+  seen_.fresh = {true};
+  group.run(next(), BusGroup::Ending::kStop);
+  group.close(next());
+  EXPECT_TRUE(seen_.pause_at_close);
+}
+
+TEST_F(BusGroupTest, OnlyABusOfItsOwnMayWaitInTheLoopsPlace) {
+  using Woke = transports::Transport::Woke;
+  seen_.woke = Woke::kArrival;
+  auto alone = group({&arm1_});
+  EXPECT_EQ(alone.wait(1ms), Woke::kArrival);
+  std::vector<LoopBus> buses;
+  buses.push_back(bus(seen_, {&arm1_}));
+  buses.push_back(bus(seen_, {&arm2_}));
+  BusGroup together(std::move(buses));
+  EXPECT_EQ(together.wait(1ms), Woke::kCannotWait);
 }
 
 TEST_F(BusGroupTest, AFullRecordQueueCostsRecordsAndNeverReceipts) {

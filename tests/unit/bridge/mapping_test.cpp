@@ -318,6 +318,21 @@ TEST(Mapping, BridgeStatusCarriesEveryCounterInItsPlace) {
   EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13));
 }
 
+TEST(Mapping, BridgeStatusNamesWhatTheFieldbusCountsAndLeavesNothingOfALongerListBehind) {
+  constexpr std::array<transports::CounterInfo, 2> kNames{{{"lost_packets", ""}, {"period_mean", "us"}}};
+  CycleRecord record;
+  record.transport_counters = {3, -4, 5};
+  meca500::BridgeStatus sample;
+  sample.transport_counters().resize(4);
+  fill(record, {}, {.counters = kNames}, sample);
+  ASSERT_EQ(sample.transport_counters().size(), 2U);
+  EXPECT_EQ(sample.transport_counters()[0].name().to_string(), "lost_packets");
+  EXPECT_EQ(sample.transport_counters()[0].unit().to_string(), "");
+  EXPECT_EQ(sample.transport_counters()[0].value(), 3);
+  EXPECT_EQ(sample.transport_counters()[1].unit().to_string(), "us");
+  EXPECT_EQ(sample.transport_counters()[1].value(), -4);
+}
+
 TEST(Mapping, UnknownFirmwareIsEmptyAndNotNought) {
   meca500::BridgeStatus sample;
   fill(CycleRecord{}, {}, {}, sample);

@@ -179,6 +179,18 @@ TEST(StatusText, FitsOnAScreenAndAnswersWhatAndWhyNot) {
   EXPECT_LT(std::ranges::count(text, '\n'), 24);
 }
 
+TEST(StatusText, ShowsWhatTheFieldbusCountsButNotWhatNeverHappened) {
+  auto view = standing_robot();
+  view.bridge->transport_counters().resize(3);
+  view.bridge->transport_counters()[0].name("lost_packets");
+  view.bridge->transport_counters()[0].value(2);
+  view.bridge->transport_counters()[1].name("watchdog_trips");
+  view.bridge->transport_counters()[2].name("period_mean");
+  view.bridge->transport_counters()[2].unit("us");
+  view.bridge->transport_counters()[2].value(10000);
+  EXPECT_THAT(status_text("arm1", view, 0), HasSubstr("Bus      lost_packets 2, period_mean 10000 us\n"));
+}
+
 TEST(StatusText, OfARobotThatOnlyHasANameHoldsNoInventedValues) {
   const auto text = status_text("arm1", RobotView{}, 0);
   EXPECT_THAT(text, HasSubstr("not known"));
