@@ -56,7 +56,10 @@ std::string transport_details(const RobotConfig& robot) {
       return "simulated Meca500 " + robot.builtin.product + ", firmware " + robot.builtin.firmware +
              ", serial number " + std::to_string(robot.builtin.serial_number);
     case TransportType::kEthernetIp:
-      return robot.ethernet_ip.address + ":" + std::to_string(robot.ethernet_ip.tcp_port);
+      return robot.ethernet_ip.address + ":" + std::to_string(robot.ethernet_ip.tcp_port) + ", RPI " +
+             to_string(robot.ethernet_ip.rpi) + ", watchdog " +
+             to_string(robot.ethernet_ip.rpi * robot.ethernet_ip.timeout_multiplier) +
+             (robot.ethernet_ip.multicast ? ", multicast" : "");
     case TransportType::kEthercat:
       return robot.ethercat.interface + ", position " + std::to_string(robot.ethercat.position);
     case TransportType::kProfinet:

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bridge/control/client_rules.hpp"
+#include "transports/ethernet_ip/transport.hpp"
 #include "transports/transport.hpp"
 
 namespace meca::bridge {
@@ -46,7 +47,14 @@ struct BuiltinConfig {
 };
 struct EthernetIpConfig {
   std::string address;  // host name or IPv4 of the robot
-  std::uint16_t tcp_port = 44818;
+  std::uint16_t tcp_port = ethernet_ip::kTcpPort;
+  std::chrono::nanoseconds rpi{};         // requested packet interval of both directions; never shorter than the cycle
+  std::uint32_t timeout_multiplier = 16;  // 4, 8 .. 512
+  bool multicast = false;                 // robot -> bridge
+  ethernet_ip::KeyPolicy key = ethernet_ip::KeyPolicy::kNone;
+  std::uint8_t key_major = 11, key_minor = 3;
+  bool large_forward_open = false;
+  bool fast = false;  // the device takes shorter intervals than the EDS of the robot allows
 };
 struct EthercatConfig {
   std::string interface;       // network interface of the segment
@@ -81,6 +89,14 @@ struct RobotConfig {
   ControlConfig control;
 };
 
+// What all EtherNet/IP robots share.
+struct EthernetIpBusConfig {
+  std::string bind = "0.0.0.0";  // own IPv4 address
+  std::uint16_t io_port = ethernet_ip::kIoPort;
+  std::uint16_t vendor_id = ethernet_ip::kOurVendorId;
+  std::uint32_t serial_number = 0;  // 0: made of this machine and this bridge
+};
+
 struct LogConfig {
   std::string level = "info";
 };
@@ -95,6 +111,7 @@ struct Config {
   DdsConfig dds;
   LogConfig log;
   RealtimeConfig realtime;
+  EthernetIpBusConfig ethernet_ip;
   std::vector<RobotConfig> robots;
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
+#include "bridge/config_ethernet_ip.hpp"
 #include "bridge/config_values.hpp"
 #include "transports/image/dynamic_data_types.hpp"
 
@@ -21,11 +23,11 @@ struct TypeInfo {
   bool available;  // this build can run it: THE place to switch a transport on
   nanoseconds shortest_cycle, default_cycle;
 };
-// Shortest cycles: ethernet_ip the RPI minimum of the vendor's EDS 11.3; profinet and ethercat 1 ms as the manual says;
-// builtin what a soft-real-time thread can keep.
+// Shortest cycles: ethernet_ip as shortest_rpi() says; profinet and ethercat 1 ms as the manual says; builtin what a
+// soft-real-time thread can keep.
 constexpr std::array kTypes{
     TypeInfo{TransportType::kBuiltin, "builtin", true, 500us, 1ms},
-    TypeInfo{TransportType::kEthernetIp, "ethernet_ip", false, 10ms, 10ms},
+    TypeInfo{TransportType::kEthernetIp, "ethernet_ip", true, 10ms, 10ms},
     TypeInfo{TransportType::kEthercat, "ethercat", false, 1ms, 1ms},
     TypeInfo{TransportType::kProfinet, "profinet", false, 1ms, 1ms},
 };
@@ -37,7 +39,7 @@ constexpr const TypeInfo& info(TransportType type) { return kTypes[static_cast<s
 struct Placed {
   RobotConfig robot;
   std::string path;  // "robots[0]"
-  yaml::Mark name, cycle, position, control_socket;
+  yaml::Mark name, cycle, address, position, control_socket;
 };
 
 bool is_speakable_firmware(std::string_view text) {
@@ -46,8 +48,6 @@ bool is_speakable_firmware(std::string_view text) {
 }
 constexpr std::string_view kFirmwareExpected =
     "9.x, 10.x or 11.x (other generations have another image), e.g. \"11.3\"";
-
-bool is_address(std::string_view text) { return config_values::is_ipv4(text) || config_values::is_host_name(text); }
 
 // The longest path that a Unix socket of Linux may have. A word without '/' is more likely a slip than a file.
 constexpr std::size_t kLongestSocketPath = 107;
@@ -77,12 +77,6 @@ void read_interface(const Section& transport, std::string& out) {
                  config_values::is_interface_name, out);
 }
 
-void read_ethernet_ip(const Section& transport, EthernetIpConfig& out) {
-  transport.require("address", "address: 192.168.0.100");
-  transport.text("address", "an IPv4 address or a host name, e.g. 192.168.0.100", is_address, out.address);
-  transport.integer("tcp_port", 1, 65535, out.tcp_port);
-}
-
 void read_ethercat(const Section& transport, EthercatConfig& out) {
   read_interface(transport, out.interface);
   transport.integer("position", 0, 65535, out.position);
@@ -98,18 +92,18 @@ void read_profinet(const Section& transport, ProfinetConfig& out) {
   if (transport.choice("byte_order", kOrders, order)) out.big_endian = order == 0;
 }
 
-// False when the type is missing or unknown: then nothing that depends on it can be checked.
-bool read_transport(const Section& robot, Placed& placed) {
+// Empty when the type is missing or unknown: then nothing that depends on it can be checked.
+std::optional<Section> read_transport(const Section& robot, Placed& placed) {
   robot.require("transport", "transport: {type: builtin}");
   const yaml::Node* node = robot.find("transport");
-  if (node == nullptr) return false;
+  if (node == nullptr) return std::nullopt;
   if (node->kind == yaml::Kind::kNull) {
     robot.report().unexpected(*node, robot.path("transport"), "a map with at least the type, e.g. {type: builtin}");
-    return false;
+    return std::nullopt;
   }
   if (node->kind != yaml::Kind::kMap) {
     robot.child("transport", "robots[].transport");  // says so
-    return false;
+    return std::nullopt;
   }
   std::array<std::string_view, kTypes.size()> names{};
   std::transform(kTypes.begin(), kTypes.end(), names.begin(), [](const TypeInfo& type) { return type.name; });
@@ -123,9 +117,10 @@ bool read_transport(const Section& robot, Placed& placed) {
   const Section transport = robot.child("transport", "robots[].transport", type_name);
   transport.require("type", "type: builtin");
   std::size_t index = 0;
-  if (!transport.choice("type", names, index)) return false;
+  if (!transport.choice("type", names, index)) return std::nullopt;
   RobotConfig& config = placed.robot;
   config.type = kTypes[index].type;
+  placed.address = transport.mark("address");
   placed.position = transport.mark("position");
   placed.control_socket = transport.mark("control_socket");
   switch (config.type) {
@@ -148,9 +143,9 @@ bool read_transport(const Section& robot, Placed& placed) {
       if (type.available) built += (built.empty() ? "'" : ", '") + std::string(type.name) + "'";
     }
     robot.report().error(transport.mark("type"), transport.path("type"),
-                         "'" + std::string(names[index]) + "' is not in this version yet, only " + built + " is");
+                         "'" + std::string(names[index]) + "' is not in this version yet; it has " + built);
   }
-  return true;
+  return transport;
 }
 
 void read_firmware(const Section& robot, transports::FirmwareVersion& out) {
@@ -253,17 +248,25 @@ void read_control(const Section& robot, const RobotConfig& config, bool check, C
   if (check && velocity_right) check_lease(robot, control, "velocity_lease", out.velocity_lease, config.cycle);
 }
 
+nanoseconds shortest_cycle(const RobotConfig& config) {
+  return config.type == TransportType::kEthernetIp ? shortest_rpi(config.ethernet_ip)
+                                                   : info(config.type).shortest_cycle;
+}
+
 Placed read_robot(const Section& robot, std::string path) {
-  Placed placed{{}, std::move(path), {}, {}, {}, {}};
+  Placed placed{{}, std::move(path), {}, {}, {}, {}, {}};
   RobotConfig& config = placed.robot;
   robot.require("name", "name: arm1");
   robot.text("name", "1 to 63 of the characters A-Z a-z 0-9 _ -, e.g. arm1", config_values::is_robot_name, config.name);
   placed.name = robot.mark("name");
   placed.cycle = robot.mark("cycle");
-  const bool type_known = read_transport(robot, placed);
-  if (type_known) config.cycle = info(config.type).default_cycle;
-  const bool cycle_right = robot.duration("cycle", info(config.type).shortest_cycle, kLongestCycle, config.cycle) ||
-                           robot.find("cycle") == nullptr;
+  const std::optional<Section> transport = read_transport(robot, placed);
+  if (transport) config.cycle = info(config.type).default_cycle;
+  const bool cycle_right =
+      robot.duration("cycle", shortest_cycle(config), kLongestCycle, config.cycle) || robot.find("cycle") == nullptr;
+  if (transport && cycle_right && config.type == TransportType::kEthernetIp) {
+    settle_ethernet_ip(*transport, config.cycle, config.ethernet_ip);
+  }
   read_firmware(robot, config.firmware);
   read_dynamic_data(robot, config.dynamic_data);
   read_control(robot, config, cycle_right, config.control);
@@ -285,6 +288,13 @@ void check_pair(const Placed& first, const Placed& second, Report& report) {
     report.error(second.name, second.path + ".name",
                  "'" + b.name + "' is already the name of " + first.path + " in line " +
                      std::to_string(first.name.line) + "; names must differ");
+  }
+  const bool same_address = a.type == TransportType::kEthernetIp && b.type == TransportType::kEthernetIp &&
+                            !a.ethernet_ip.address.empty() && a.ethernet_ip.address == b.ethernet_ip.address;
+  if (same_address) {
+    report.error(second.address, second.path + ".transport.address",
+                 "'" + b.ethernet_ip.address + "' is already the address of " + first.path + " in line " +
+                     std::to_string(first.address.line) + "; a robot has one connection");
   }
   const bool same_segment = a.type == TransportType::kEthercat && b.type == TransportType::kEthercat &&
                             !a.ethercat.interface.empty() && a.ethercat.interface == b.ethercat.interface;

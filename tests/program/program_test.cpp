@@ -163,9 +163,8 @@ TEST(Program, ChecksEveryFileOfTheConfigFolderAndSaysWhatItWouldRun) {
     const std::string file = kSource + "/config/" + name;
     const Outcome outcome = meca_bridge({"--check", "--config", file});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out,
-                StartsWith(file + ": good\nDDS domain 0, topics meca500/..., interfaces all over UDP\n"
-                                  "arm1: builtin (simulated Meca500 R4, firmware 11.3, serial number 1"));
+    EXPECT_THAT(outcome.out, StartsWith(file + ": good\nDDS domain 0, topics meca500/..., interfaces all over UDP\n"
+                                               "arm1: builtin (simulated Meca500 R4, firmware 11.3, serial number 1"));
     EXPECT_THAT(outcome.out, HasSubstr("), cycle 1ms, control on\n"));
     EXPECT_THAT(outcome.err, IsEmpty());
   }

@@ -87,7 +87,7 @@ Originator::Text Originator::no_answer() const noexcept {
     return Text::format(
         "no answer from %.*s on TCP port %u for %.3g s; check address, cable, and that EtherNet/IP is enabled on the "
         "robot",
-        length(robot), robot.view().data(), unsigned{kTcpPort}, waited);
+        length(robot), robot.view().data(), unsigned{settings_.tcp_port}, waited);
   }
   return Text::format("no answer to %s from %.*s for %.3g s, though TCP is connected; restart the robot's EtherNet/IP",
                       name_of_pending(), length(robot), robot.view().data(), waited);
@@ -196,7 +196,7 @@ void Originator::tcp_closed(std::string_view why, Time now) noexcept {
   if (!was_up) {
     return fail(Text::format("TCP connection to %.*s port %u failed: %.*s; check address, cable, and that EtherNet/IP "
                              "is enabled on the robot",
-                             length(robot), robot.view().data(), unsigned{kTcpPort}, length(why), why.data()),
+                             length(robot), robot.view().data(), unsigned{settings_.tcp_port}, length(why), why.data()),
                 now);
   }
   if (why.empty()) why = "closed by the robot";

@@ -48,7 +48,8 @@ struct OriginatorSettings {
   std::uint16_t incarnation = 0;    // upper half of the connection ids we choose: random, so that packets of an earlier
                                     // life are not taken for ours
   std::uint32_t address = 0;        // the robot's IPv4, host byte order
-  std::uint16_t io_port = kIoPort;  // where we listen; not 2222: told to the robot by a socket address item
+  std::uint16_t tcp_port = kTcpPort;  // of the robot; for the sentences only: the owner of the socket connects
+  std::uint16_t io_port = kIoPort;    // where we listen; not 2222: told to the robot by a socket address item
   Time reply_timeout = std::chrono::seconds(2);          // TCP connect, and each explicit reply
   Time first_packet_timeout = std::chrono::seconds(10);  // at least; the watchdog where that is longer
   Time shortest_backoff = std::chrono::milliseconds(200), longest_backoff = std::chrono::seconds(10);

@@ -32,6 +32,8 @@ std::string_view text_of(int error) noexcept {
     case EMFILE:
     case ENFILE:
       return "no file descriptors left on this machine";
+    case EADDRNOTAVAIL:
+      return "the own address to connect from is not an address of this machine";
     case EACCES:
     case EPERM:
       return "not permitted: a firewall of this machine forbids it";
@@ -56,15 +58,17 @@ Endpoint name_of(int descriptor, AskName ask) noexcept {
 
 }  // namespace
 
-TcpStream TcpStream::connect(const Endpoint& to, std::uint8_t dscp) noexcept {
+TcpStream TcpStream::connect(const Endpoint& to, std::uint8_t dscp, std::uint32_t from) noexcept {
   TcpStream out(File(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)));
   if (!out.file_) {
     out.trouble_ = text_of(errno);
     return out;
   }
   prepare(out.file_.get(), dscp);
-  const sockaddr_in address = to_sockaddr(to);
-  const int result = ::connect(out.file_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  const sockaddr_in address = to_sockaddr(to), own = to_sockaddr({from, 0});
+  int result = 0;
+  if (from != 0) result = ::bind(out.file_.get(), reinterpret_cast<const sockaddr*>(&own), sizeof own);
+  if (result == 0) result = ::connect(out.file_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   if (result != 0 && errno != EINPROGRESS) {
     out.trouble_ = text_of(errno);
     out.close();

@@ -16,8 +16,9 @@ class TcpStream {
  public:
   TcpStream() = default;
   explicit TcpStream(File file) noexcept : file_(std::move(file)) {}
-  // Begins to connect; progress() tells how it went. `dscp`: asked for, not insisted on.
-  static TcpStream connect(const Endpoint& to, std::uint8_t dscp = 0) noexcept;
+  // Begins to connect; progress() tells how it went. `dscp`: asked for, not insisted on. `from`: the own address to
+  // connect from; 0: the system's choice.
+  static TcpStream connect(const Endpoint& to, std::uint8_t dscp = 0, std::uint32_t from = 0) noexcept;
 
   enum class Progress : std::uint8_t { kConnecting, kConnected, kFailed };
   // For a stream of connect(): until it is no longer kConnecting. kFailed: trouble() says why.

@@ -50,6 +50,7 @@ UdpSocket::UdpSocket(const Endpoint& local, const UdpOptions& options)
   if (options.share_port) set(fd, SOL_SOCKET, SO_REUSEADDR, 1);
   if (options.broadcast) set(fd, SOL_SOCKET, SO_BROADCAST, 1);
   if (options.dscp != 0) set(fd, IPPROTO_IP, IP_TOS, options.dscp << 2);
+  if (options.receive_buffer != 0) set(fd, SOL_SOCKET, SO_RCVBUF, options.receive_buffer);
   set(fd, IPPROTO_IP, IP_MULTICAST_TTL, int{options.multicast_ttl});
   // Without it every group that any program of this machine has joined would reach this socket.
   set(fd, IPPROTO_IP, IP_MULTICAST_ALL, 0);

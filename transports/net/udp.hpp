@@ -16,6 +16,7 @@ struct UdpOptions {
   bool broadcast = false;
   std::uint8_t dscp = 0;           // of what is sent; asked for, not insisted on
   std::uint8_t multicast_ttl = 1;  // of what is sent to groups
+  int receive_buffer = 0;          // bytes, the kernel's own overhead included; 0: the system's choice
   std::uint32_t multicast_interface =
       0;  // own address of the interface that groups are sent on; 0: the system's choice
 };
