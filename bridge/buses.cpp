@@ -110,11 +110,12 @@ ethernet_ip::RobotOptions options_of(const RobotConfig& robot) {
 // Two bridges on one machine differ in what they publish, and so in who they are to the robots.
 ethernet_ip::BusOptions options_of(const Config& config) {
   const EthernetIpBusConfig& bus = config.ethernet_ip;
-  return {.bind = net::parse_ipv4(bus.bind).value_or(0),
-          .io_port = bus.io_port,
-          .vendor_id = bus.vendor_id,
-          .serial_number = bus.serial_number,
-          .name = config.dds.participant_name + "/" + std::to_string(config.dds.domain) + "/" + config.dds.topic_prefix};
+  return {
+      .bind = net::parse_ipv4(bus.bind).value_or(0),
+      .io_port = bus.io_port,
+      .vendor_id = bus.vendor_id,
+      .serial_number = bus.serial_number,
+      .name = config.dds.participant_name + "/" + std::to_string(config.dds.domain) + "/" + config.dds.topic_prefix};
 }
 
 using Channels = std::vector<std::unique_ptr<RobotChannel>>;

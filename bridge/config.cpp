@@ -167,7 +167,7 @@ ConfigResult parse_config(std::string_view text, const std::string& file_name) {
     config.robots = read_robots(root);
     config.log = read_log(root);
     config.realtime = read_realtime(root);
-    config.ethernet_ip = read_ethernet_ip_bus(root);
+    config.ethernet_ip = read_ethernet_ip_bus(root, config.robots);
     config.dds = read_dds(root, config.robots);
   }
   return std::move(report).result(std::move(config));

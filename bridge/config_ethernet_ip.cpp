@@ -16,6 +16,8 @@ constexpr nanoseconds kShortestFastRpi = 1ms;
 // A general purpose system is late by some 10 ms now and then; a robot that is left alone should notice it soon.
 constexpr nanoseconds kTightWatchdog = 40ms, kLazyWatchdog = 5s;
 
+constexpr std::string_view kAnyAddress = "0.0.0.0";
+
 bool is_address(std::string_view text) { return config_values::is_ipv4(text) || config_values::is_host_name(text); }
 
 bool is_serial_number(std::string_view text) {
@@ -35,17 +37,20 @@ void read_key(const Section& transport, EthernetIpConfig& out) {
   std::size_t policy = 0;
   if (transport.choice("key", kPolicies, policy)) out.key = static_cast<ethernet_ip::KeyPolicy>(policy);
   std::string revision;
-  const bool given = transport.text("key_revision", "major.minor of the key, 1.1 to 127.255, e.g. \"11.3\"",
-                                    is_revision, revision);
+  const bool given =
+      transport.text("key_revision", "major.minor of the key, 1.1 to 127.255, e.g. \"11.3\"", is_revision, revision);
   if (!given) return;
   const auto version = *parse_firmware(revision);
   out.key_major = static_cast<std::uint8_t>(version.major);
   out.key_minor = static_cast<std::uint8_t>(version.minor);
+  if (out.key != ethernet_ip::KeyPolicy::kNone) return;
+  transport.report().warning(transport.mark("key_revision"), transport.path("key_revision"),
+                             "is not used without a key; write 'key: compatible' or 'key: exact' as well");
 }
 
 }  // namespace
 
-EthernetIpBusConfig read_ethernet_ip_bus(const Section& root) {
+EthernetIpBusConfig read_ethernet_ip_bus(const Section& root, const std::vector<RobotConfig>& robots) {
   EthernetIpBusConfig out;
   const Section bus = root.child("ethernet_ip", "ethernet_ip");
   bus.text("bind", "the IPv4 address of one of this machine's interfaces, or 0.0.0.0 for all", config_values::is_ipv4,
@@ -55,6 +60,14 @@ EthernetIpBusConfig read_ethernet_ip_bus(const Section& root) {
   std::string serial;
   if (bus.text("serial_number", "auto, or a whole number from 1 to 4294967295", is_serial_number, serial)) {
     out.serial_number = serial == "auto" ? 0 : static_cast<std::uint32_t>(*config_values::integer(serial));
+  }
+  const auto listener =
+      std::ranges::find_if(robots, [](const RobotConfig& each) { return each.ethernet_ip.multicast; });
+  if (listener != robots.end() && out.bind != kAnyAddress) {
+    bus.report().error(bus.mark("bind"), bus.path("bind"),
+                       "multicast, as '" + listener->name +
+                           "' asks for, does not reach a socket of one address; write " + std::string(kAnyAddress) +
+                           ", or leave multicast out");
   }
   return out;
 }
@@ -84,15 +97,16 @@ void settle_ethernet_ip(const Section& transport, nanoseconds cycle, EthernetIpC
     return;
   }
   const nanoseconds watchdog = config.rpi * config.timeout_multiplier;
-  if (watchdog >= kTightWatchdog + 1ns && watchdog <= kLazyWatchdog) return;
+  if (watchdog > kTightWatchdog && watchdog <= kLazyWatchdog) return;
   const std::string key = transport.find("timeout_multiplier") == nullptr ? "rpi" : "timeout_multiplier";
-  const std::string product = std::to_string(config.timeout_multiplier) + " x " + to_string(config.rpi) + " = " +
-                              to_string(watchdog);
+  const std::string product =
+      std::to_string(config.timeout_multiplier) + " x " + to_string(config.rpi) + " = " + to_string(watchdog);
   transport.report().warning(
       transport.mark(key), transport.path(key),
-      product + (watchdog > kLazyWatchdog
-                     ? ": the robot notices only then that the bridge is gone; 5s or less is better"
-                     : ": a few late packets end the connection; from 80ms on it suits a system that is not real-time"));
+      product +
+          (watchdog > kLazyWatchdog
+               ? ": the robot notices only then that the bridge is gone; 5s or less is better"
+               : ": a few late packets end the connection; from 80ms on it suits a system that is not real-time"));
 }
 
 }  // namespace meca::bridge

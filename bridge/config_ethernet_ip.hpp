@@ -2,13 +2,14 @@
 #pragma once
 
 #include <chrono>
+#include <vector>
 
 #include "bridge/config.hpp"
 #include "bridge/config_reader.hpp"
 
 namespace meca::bridge {
 
-EthernetIpBusConfig read_ethernet_ip_bus(const Section& root);
+EthernetIpBusConfig read_ethernet_ip_bus(const Section& root, const std::vector<RobotConfig>& robots);
 
 void read_ethernet_ip(const Section& transport, EthernetIpConfig& out);
 // What the shortest cycle and RPI are: the minimum of the vendor's EDS 11.3, unless the device is said to be faster.

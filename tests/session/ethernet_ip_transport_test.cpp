@@ -61,7 +61,8 @@ class Turner {
     return true;
   }
   bool until_up() {
-    return until([&] { return std::ranges::all_of(exchanges, [](const auto& e) { return e.link == LinkState::kUp; }); });
+    return until(
+        [&] { return std::ranges::all_of(exchanges, [](const auto& e) { return e.link == LinkState::kUp; }); });
   }
 
   std::int64_t counter(std::string_view name, std::size_t robot = 0) const {
@@ -100,7 +101,8 @@ TEST(EthernetIpTransport, CarriesTheImageInBothDirections) {
   EXPECT_TRUE(bus.until([&] { return bus.exchanges[0].input == input_of(0x5A); }));
   bus.exchanges[0].output.fill(std::byte{0xA5});
   bus.exchanges[0].output_valid = true;
-  EXPECT_TRUE(bus.until([&] { return arm1.with([&](auto& a) { return a.run() && a.output() == bus.exchanges[0].output; }); }));
+  EXPECT_TRUE(
+      bus.until([&] { return arm1.with([&](auto& a) { return a.run() && a.output() == bus.exchanges[0].output; }); }));
   EXPECT_EQ(bus.detail(), "");
   EXPECT_EQ(bus.counter("api_o_to_t"), 10'000);
   EXPECT_EQ(bus.counter("api_t_to_o"), 10'000);

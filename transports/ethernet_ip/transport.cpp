@@ -88,7 +88,9 @@ OriginatorSettings Bus::settings_of(const RobotOptions& robot) const {
 void Bus::check_addresses() const {
   const auto same = std::ranges::adjacent_find(by_address_, {}, &std::pair<std::uint32_t, RobotLink*>::first);
   if (same == by_address_.end()) return;
-  const auto name = [&](const RobotLink* link) { return robots_[static_cast<std::size_t>(link - links_.data())].address; };
+  const auto name = [&](const RobotLink* link) {
+    return robots_[static_cast<std::size_t>(link - links_.data())].address;
+  };
   throw std::runtime_error("'" + name(same->second) + "' and '" + name(std::next(same)->second) + "' are both " +
                            net::to_string(same->first) + "; a robot has one connection");
 }
@@ -174,7 +176,8 @@ void Bus::produce(Time now) noexcept {
 }
 
 Time Bus::next_send(Time at_most) const noexcept {
-  for (std::size_t i = 0; i < exchanges_.size(); ++i) at_most = std::min(at_most, links_[i].next_send().value_or(at_most));
+  for (std::size_t i = 0; i < exchanges_.size(); ++i)
+    at_most = std::min(at_most, links_[i].next_send().value_or(at_most));
   return at_most;
 }
 

@@ -29,11 +29,11 @@ struct RobotOptions {
 };
 
 struct BusOptions {
-  std::uint32_t bind = 0;              // own IPv4 address for UDP and TCP, host byte order; 0: all
-  std::uint16_t io_port = kIoPort;     // another one than 2222 is told to the robots when a connection is opened
+  std::uint32_t bind = 0;           // own IPv4 address for UDP and TCP, host byte order; 0: all
+  std::uint16_t io_port = kIoPort;  // another one than 2222 is told to the robots when a connection is opened
   std::uint16_t vendor_id = kOurVendorId;
-  std::uint32_t serial_number = 0;     // 0: made of this machine's identity and `name`, the same after every start
-  std::string name;                    // of the program; two of them on one machine must differ
+  std::uint32_t serial_number = 0;  // 0: made of this machine's identity and `name`, the same after every start
+  std::string name;                 // of the program; two of them on one machine must differ
 };
 
 // At most transports::kMostCounters counters; config/ethernet_ip.yaml says what each one means.

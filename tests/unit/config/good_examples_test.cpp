@@ -75,7 +75,7 @@ TEST(ConfigFolder, HasOnlyFilesThatLoadWithoutErrorOrWarning) {
     EXPECT_TRUE(result.config.has_value()) << entry.path();
     ++files;
   }
-  EXPECT_GE(files, 3);
+  EXPECT_GE(files, 4);
 }
 
 TEST(ConfigFolder, CellHasFourRobotsAtOneKilohertz) {
@@ -118,10 +118,34 @@ TEST(Reference, HasItsOtherTransportsRightAndOnlyTheirAbsenceToComplainOf) {
   const ConfigResult result = parse_config(reference_with_all_transports(), "reference.yaml");
   std::vector<std::string> messages;
   for (const ConfigError& error : result.errors) messages.push_back(error.key + ": " + error.message);
-  EXPECT_THAT(messages, testing::ElementsAre(
-                            "robots[1].transport.type: 'ethernet_ip' is not in this version yet, only 'builtin' is",
-                            "robots[2].transport.type: 'ethercat' is not in this version yet, only 'builtin' is",
-                            "robots[3].transport.type: 'profinet' is not in this version yet, only 'builtin' is"));
+  EXPECT_THAT(messages,
+              testing::ElementsAre(
+                  "robots[2].transport.type: 'ethercat' is not in this version yet; it has 'builtin', 'ethernet_ip'",
+                  "robots[3].transport.type: 'profinet' is not in this version yet; it has 'builtin', 'ethernet_ip'"));
+}
+
+// The first of the other transports alone, and with nothing but its address.
+TEST(Reference, HasTheDefaultsOfEthernetIp) {
+  std::string text = reference_with_all_transports();
+  text.resize(text.find("  - name: arm3"));
+  const auto reference = parse_config(text, "reference.yaml").config;
+  const auto smallest =
+      parse_config("robots: [{name: arm1, transport: {type: ethernet_ip, address: 192.168.0.100}}]", "smallest.yaml");
+  EXPECT_EQ(letters(smallest.warnings), "");
+  ASSERT_TRUE(reference && smallest.config);
+  ASSERT_EQ(reference->robots.size(), 2U);
+  const RobotConfig &a = reference->robots[1], &b = smallest.config->robots[0];
+  EXPECT_EQ(a.cycle, b.cycle);
+  EXPECT_EQ(a.ethernet_ip.address, b.ethernet_ip.address);
+  EXPECT_EQ(a.ethernet_ip.tcp_port, b.ethernet_ip.tcp_port);
+  EXPECT_EQ(a.ethernet_ip.rpi, b.ethernet_ip.rpi);
+  EXPECT_EQ(a.ethernet_ip.timeout_multiplier, b.ethernet_ip.timeout_multiplier);
+  EXPECT_EQ(a.ethernet_ip.multicast, b.ethernet_ip.multicast);
+  EXPECT_EQ(a.ethernet_ip.key, b.ethernet_ip.key);
+  EXPECT_EQ(a.ethernet_ip.key_major, b.ethernet_ip.key_major);
+  EXPECT_EQ(a.ethernet_ip.key_minor, b.ethernet_ip.key_minor);
+  EXPECT_EQ(a.ethernet_ip.large_forward_open, b.ethernet_ip.large_forward_open);
+  EXPECT_EQ(a.ethernet_ip.fast, b.ethernet_ip.fast);
 }
 
 TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
@@ -141,6 +165,10 @@ TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
   EXPECT_EQ(reference->realtime.priority, smallest->realtime.priority);
   EXPECT_EQ(reference->realtime.lock_memory, smallest->realtime.lock_memory);
   EXPECT_EQ(reference->realtime.cpus, smallest->realtime.cpus);
+  EXPECT_EQ(reference->ethernet_ip.bind, smallest->ethernet_ip.bind);
+  EXPECT_EQ(reference->ethernet_ip.io_port, smallest->ethernet_ip.io_port);
+  EXPECT_EQ(reference->ethernet_ip.vendor_id, smallest->ethernet_ip.vendor_id);
+  EXPECT_EQ(reference->ethernet_ip.serial_number, smallest->ethernet_ip.serial_number);
   const RobotConfig &a = reference->robots.at(0), &b = smallest->robots.at(0);
   EXPECT_EQ(a.builtin.product, b.builtin.product);
   EXPECT_EQ(a.builtin.firmware, b.builtin.firmware);
@@ -192,6 +220,7 @@ dds:
     CommandReceipt: {depth: 10000}
 log: {level: trace}
 realtime: {priority: 80, lock_memory: true, cpus: [2, 3]}
+ethernet_ip: {bind: 0.0.0.0, io_port: 2223, vendor_id: 4660, serial_number: 4294967295}
 robots:
   - name: arm_1-A
     transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false,
@@ -208,6 +237,10 @@ robots:
       take_over_grace: 0s
       clients: [{name: "Zelle 7", priority: 100, on_loss: stop}, {name: meca-ctl@*, priority: 1}, {name: "*"}]
   - {name: "2", transport: {type: builtin}, cycle: 10 ms, firmware: auto}
+  - name: "3"
+    transport: {type: ethernet_ip, address: robot3.cell, tcp_port: 44819, rpi: 7.5ms, timeout_multiplier: 64,
+                multicast: true, key: exact, key_revision: "10.2", large_forward_open: true, fast: true}
+    cycle: 5ms
 )",
                                            "all.yaml");
   ASSERT_EQ(letters(result.errors), "");
@@ -229,7 +262,23 @@ robots:
   EXPECT_EQ(c.realtime.priority, 80);
   EXPECT_TRUE(c.realtime.lock_memory);
   EXPECT_EQ(c.realtime.cpus, (std::vector<int>{2, 3}));
-  ASSERT_EQ(c.robots.size(), 2U);
+  EXPECT_EQ(c.ethernet_ip.bind, "0.0.0.0");
+  EXPECT_EQ(c.ethernet_ip.io_port, 2223);
+  EXPECT_EQ(c.ethernet_ip.vendor_id, 4660);
+  EXPECT_EQ(c.ethernet_ip.serial_number, 4294967295U);
+  ASSERT_EQ(c.robots.size(), 3U);
+  const EthernetIpConfig& e = c.robots[2].ethernet_ip;
+  EXPECT_EQ(c.robots[2].type, TransportType::kEthernetIp);
+  EXPECT_EQ(e.address, "robot3.cell");
+  EXPECT_EQ(e.tcp_port, 44819);
+  EXPECT_EQ(e.rpi, 7500us);
+  EXPECT_EQ(e.timeout_multiplier, 64U);
+  EXPECT_TRUE(e.multicast);
+  EXPECT_EQ(e.key, meca::ethernet_ip::KeyPolicy::kExact);
+  EXPECT_EQ(e.key_major, 10);
+  EXPECT_EQ(e.key_minor, 2);
+  EXPECT_TRUE(e.large_forward_open);
+  EXPECT_TRUE(e.fast);
   const RobotConfig& r = c.robots[0];
   EXPECT_EQ(r.name, "arm_1-A");
   EXPECT_EQ(r.builtin.product, "R3");
@@ -279,6 +328,23 @@ robots: [{name: arm1, transport: {type: builtin}, cycle: 4ms}]
             "will be published once a cycle\n"
             "odd.yaml:4:57: dds.topics.DynamicData.durability: best_effort writers keep nothing for late joiners; make "
             "the topic reliable as well\n");
+}
+
+TEST(ParseConfig, WarnsOfWatchdogsThatAreTooNervousOrTooLazyAndOfAKeyWithoutUse) {
+  const ConfigResult result = parse_config(R"(robots:
+  - {name: arm1, transport: {type: ethernet_ip, address: robot1, timeout_multiplier: 4}}
+  - {name: arm2, transport: {type: ethernet_ip, address: robot2, rpi: 1s}}
+  - {name: arm3, transport: {type: ethernet_ip, address: robot3, key_revision: "11.3"}}
+)",
+                                           "odd.yaml");
+  ASSERT_TRUE(result.config.has_value());
+  EXPECT_EQ(letters(result.warnings),
+            "odd.yaml:2:86: robots[0].transport.timeout_multiplier: 4 x 10ms = 40ms: a few late packets end the "
+            "connection; from 80ms on it suits a system that is not real-time\n"
+            "odd.yaml:3:71: robots[1].transport.rpi: 16 x 1s = 16s: the robot notices only then that the bridge is "
+            "gone; 5s or less is better\n"
+            "odd.yaml:4:80: robots[2].transport.key_revision: is not used without a key; write 'key: compatible' or "
+            "'key: exact' as well\n");
 }
 
 }  // namespace
