@@ -72,6 +72,8 @@ const char* Originator::name_of_pending() const noexcept {
       return "RegisterSession";
     case Pending::kIdentity:
       return "GetAttributesAll of the identity";
+    case Pending::kListIdentity:
+      return "ListIdentity";
     case Pending::kForwardOpen:
       return "Forward Open";
     case Pending::kForwardClose:

@@ -2,9 +2,10 @@
 // bytes, wishes and facts go out. Whoever owns the sockets feeds it and does what it wishes for. No allocation, no
 // clock.
 //
-// The way of a connection: TCP -> RegisterSession -> identity (GetAttributesAll) -> Forward Open -> I/O over UDP; on
-// any failure Forward Close as far as it goes, back-off, and again, with a new connection serial. The loss of TCP alone
-// is no I/O fault (devices close idle sessions while I/O goes on); a new one is opened when it is needed to close.
+// The way of a connection: TCP -> RegisterSession -> identity (GetAttributesAll, or ListIdentity where a device does
+// not offer that) -> Forward Open -> I/O over UDP; on any failure Forward Close as far as it goes, back-off, and again,
+// with a new connection serial. The loss of TCP alone is no I/O fault (devices close idle sessions while I/O goes on);
+// a new one is opened when it is needed to close.
 //
 // Once a cycle, in this order: what has arrived (TCP, UDP), tick(), wants_tcp(), produce(), tcp_output().
 #pragma once
@@ -76,7 +77,7 @@ class Originator {
     kWaiting,      // until the back-off is over
     kConnecting,   // TCP
     kRegistering,  // RegisterSession
-    kIdentifying,  // GetAttributesAll of the Identity object
+    kIdentifying,  // GetAttributesAll of the Identity object, or ListIdentity
     kOpening,      // Forward Open
     kRunning,      // I/O in both directions
     kClosing,      // Forward Close on the way out, or after a fault
@@ -136,7 +137,14 @@ class Originator {
 
  private:
   // What the robot has not answered yet; one at a time.
-  enum class Pending : std::uint8_t { kNothing, kRegisterSession, kIdentity, kForwardOpen, kForwardClose };
+  enum class Pending : std::uint8_t {
+    kNothing,
+    kRegisterSession,
+    kIdentity,
+    kListIdentity,
+    kForwardOpen,
+    kForwardClose
+  };
   using Text = FixedText<191>;
 
   // originator.cpp: the life of a connection
@@ -153,6 +161,7 @@ class Originator {
   // originator_open.cpp: messages over TCP
   void send_register_session(Time now) noexcept;
   void send_identity_request(Time now) noexcept;
+  void send_list_identity(Time now) noexcept;
   void send_forward_open(Time now) noexcept;
   void send_forward_close(Time now) noexcept;
   void send_unregister_session() noexcept;
@@ -164,6 +173,7 @@ class Originator {
   void session_registered(std::uint32_t session, Time now) noexcept;
   void reply_received(Bytes data, Time now) noexcept;
   void identity_received(const Reply& reply, Time now) noexcept;
+  void identified(const std::optional<Identity>& identity, Time now) noexcept;
   void open_answered(const Reply& reply, const Items& items, Time now) noexcept;
   void open_refused(const Reply& reply, Time now) noexcept;
   void close_answered(Time now) noexcept;

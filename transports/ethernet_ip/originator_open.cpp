@@ -70,6 +70,12 @@ void Originator::send_identity_request(Time now) noexcept {
   expect(Pending::kIdentity, now);
 }
 
+// For devices whose Identity object has no GetAttributesAll, as those of one public stack; every device answers this.
+void Originator::send_list_identity(Time now) noexcept {
+  send_encapsulated(Command::kListIdentity, {});
+  expect(Pending::kListIdentity, now);
+}
+
 void Originator::send_forward_open(Time now) noexcept {
   if (next_serial_ == 0) next_serial_ = 1;
   open_ = {};
@@ -139,8 +145,10 @@ void Originator::oversized(std::size_t size, Time now) noexcept {
 }
 
 void Originator::message_received(const Header& header, Bytes data, Time now) noexcept {
-  const bool registering = pending_ == Pending::kRegisterSession;
-  const Command expected = registering ? Command::kRegisterSession : Command::kSendRrData;
+  const bool registering = pending_ == Pending::kRegisterSession, listing = pending_ == Pending::kListIdentity;
+  const Command expected = registering ? Command::kRegisterSession
+                           : listing   ? Command::kListIdentity
+                                       : Command::kSendRrData;
   // Unasked, late, NOP, or one that is to be discarded.
   if (pending_ == Pending::kNothing || header.options != 0) return;
   if (header.command != static_cast<std::uint16_t>(expected)) return;
@@ -153,6 +161,10 @@ void Originator::message_received(const Header& header, Bytes data, Time now) no
                 now);
   }
   if (registering) return session_registered(header.session, now);
+  if (listing) {  // belongs to no session
+    const auto listed = read_listed_identity(data);
+    return identified(listed ? std::optional(listed->identity) : std::nullopt, now);
+  }
   if (header.session != session_) {
     return fail(Text::format("answer to %s for session 0x%08X, ours is 0x%08X; restart the robot's EtherNet/IP",
                              name_of_pending(), static_cast<unsigned>(header.session), static_cast<unsigned>(session_)),
@@ -191,14 +203,21 @@ void Originator::reply_received(Bytes data, Time now) noexcept {
       return;
     case Pending::kNothing:
     case Pending::kRegisterSession:
+    case Pending::kListIdentity:
       return;
   }
 }
 
 void Originator::identity_received(const Reply& reply, Time now) noexcept {
+  constexpr auto kNotOffered = static_cast<std::uint8_t>(GeneralStatus::kServiceNotSupported);
+  if (reply.general == kNotOffered) return send_list_identity(now);
   if (!reply.ok()) return fail(refusal_text(name_of_pending(), reply), now);
   wire::Reader in(reply.data);
-  identity_ = read_identity(in);
+  identified(read_identity(in), now);
+}
+
+void Originator::identified(const std::optional<Identity>& identity, Time now) noexcept {
+  identity_ = identity;
   if (!identity_) return fail(Text("the robot's identity is malformed; is it a Meca500?"), now);
   const Identity& i = *identity_;
   const bool ours =

@@ -44,6 +44,28 @@ TEST(Originator, StartsAtOnceAndGoesTheWholeWay) {
   EXPECT_EQ(rig.machine.counters().opens, 1u);
 }
 
+// A CIPster adapter of 2026 refuses GetAttributesAll of its identity so.
+TEST(Originator, AsksForTheListedIdentityWhereTheIdentityObjectDoesNotGiveItInOnePiece) {
+  Rig rig;
+  rig.connect();
+  rig.take_output();
+  rig.session = 1;
+  rig.answer_register();
+  rig.take_output();
+  rig.feed("6F0014000100000000000000000000000000000000000000000000000000020000000000B200040081000800");
+  EXPECT_EQ(rig.machine.state(), State::kIdentifying);
+  EXPECT_TRUE(rig.machine.trouble().empty());
+  EXPECT_EQ(to_hex(rig.take_output()), "630000000100000000000000000000000000000000000000");
+  rig.session = 0;  // the answer belongs to none
+  rig.feed(rig.encapsulated(Command::kListIdentity, from_hex(golden::kListedIdentity)));
+  EXPECT_EQ(rig.machine.state(), State::kOpening);
+  EXPECT_EQ(rig.machine.identity()->serial_number, 123456789u);
+  rig.take_open();
+  rig.session = 1;
+  rig.answer_open();
+  EXPECT_EQ(rig.machine.state(), State::kRunning);
+}
+
 TEST(ForwardOpenRequest, OfTheUsualSettingsIsTheOneOfTheVendorsFiles) {
   Rig rig;
   rig.connect();

@@ -133,8 +133,37 @@ TEST(Trouble, TheIdentityIsRefused) {
   Rig rig;
   rig.connect();
   rig.answer_register();
-  rig.feed(rig.unconnected(from_hex("81000800")));
-  EXPECT_TRUE(says(rig, "GetAttributesAll of the identity refused (0x08)")) << rig.machine.trouble();
+  rig.feed(rig.unconnected(from_hex("81000200")));
+  EXPECT_TRUE(says(rig, "GetAttributesAll of the identity refused (0x02)")) << rig.machine.trouble();
+}
+
+TEST(Trouble, TheIdentityThatWasListedIsMalformedOrOfAnotherDeviceOrDoesNotCome) {
+  const auto listing = [](Rig& rig) {
+    rig.connect();
+    rig.answer_register();
+    rig.feed(rig.unconnected(from_hex("81000800")));
+  };
+  Rig malformed;
+  listing(malformed);
+  malformed.feed(malformed.encapsulated(Command::kListIdentity, from_hex("0000")));
+  EXPECT_TRUE(says(malformed, "identity is malformed")) << malformed.machine.trouble();
+
+  Rig another;
+  listing(another);
+  auto data = from_hex(golden::kListedIdentity);
+  data[24] = std::byte{47};  // vendor
+  another.feed(another.encapsulated(Command::kListIdentity, data));
+  EXPECT_TRUE(says(another, "another device at 192.168.0.100: found vendor 1583")) << another.machine.trouble();
+
+  Rig silent;
+  listing(silent);
+  silent.tick(2s);
+  EXPECT_TRUE(says(silent, "no answer to ListIdentity")) << silent.machine.trouble();
+
+  Rig refused;
+  listing(refused);
+  refused.feed(refused.encapsulated(Command::kListIdentity, {}, 0x01));
+  EXPECT_TRUE(says(refused, "ListIdentity not taken (encapsulation status 0x01)")) << refused.machine.trouble();
 }
 
 TEST(Trouble, TheAnswerIsForAnotherConnection) {
