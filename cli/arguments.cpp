@@ -26,6 +26,7 @@ Examples:
   meca-ctl --robot arm2 watch                 live view; with --json one object a line
   meca-ctl errors 1007                        what an error or stop means and what to do; all without a code
   meca-ctl sim press p-stop2                  buttons of a simulated robot here; 'meca-ctl sim' lists them
+  meca-ctl scan ethernet_ip --interface eth1  which devices are there, before any bridge runs
   meca-ctl decode --input image.bin --firmware 11.3
 
 Exit codes: 0 done, 1 refused, aborted or discarded, 2 arguments, 4 no bridge or no DDS, 5 time-out, 130 interrupted.
@@ -52,7 +53,8 @@ void add_global_options(CLI::App& app, Invocation& call, Words& words) {
   app.add_option("--prefix", call.prefix, "What the topic names begin with")
       ->envname("MECA_PREFIX")
       ->capture_default_str();
-  app.add_option("--interface", call.interfaces, "IPv4 address of a network interface to use; repeat for several")
+  app.add_option("--interface", call.interfaces,
+                 "IPv4 address of a network interface to use (scan: or its name); repeat for several")
       ->envname("MECA_INTERFACE")
       ->allow_extra_args(false);
   app.add_flag("--no-shared-memory", words.no_shared_memory, "UDP only: for containers that do not share /dev/shm")
@@ -164,6 +166,25 @@ void add_sim(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::
   sub->add_option("--socket", call.socket, "Control socket of the robot, when it is not at its usual place");
 }
 
+void add_scan(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
+  auto* sub = add_verb(
+      app, "scan", "Who is there on a fieldbus; needs no bridge",
+      [](Invocation& c, const Words& w) {
+        const std::vector<std::string> buses{"ethernet_ip"};
+        if (w.first.empty()) throw UsageError("scan wants a fieldbus, as in 'scan ethernet_ip --interface eth1'");
+        if (w.first != buses.front()) {
+          throw UsageError("scan does not know '" + w.first + "', only ethernet_ip" + did_you_mean(w.first, buses));
+        }
+        c.verb = Verb::kScan;
+      },
+      finishers);
+  sub->add_option("bus", words.first, "ethernet_ip");
+  sub->add_option("--address", call.address,
+                  "Ask this IPv4 address alone, or a subnet's broadcast address; default: everybody on the interfaces");
+  sub->footer(
+      "Asks on every interface of --interface, or on all of this machine. Waits --timeout seconds, default 2.5.");
+}
+
 void add_decode(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
   auto* sub = add_verb(
       app, "decode", "Name the fields of a 60 or 252 byte process image",
@@ -249,6 +270,7 @@ std::variant<Invocation, Answer> parse_arguments(std::vector<std::string> words)
   add_commands(app, collected, finishers);
   add_velocity(app, call, collected, finishers);
   add_sim(app, call, collected, finishers);
+  add_scan(app, call, collected, finishers);
   add_decode(app, call, collected, finishers);
   add_errors(app, call, collected, finishers);
 

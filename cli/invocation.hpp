@@ -33,6 +33,7 @@ enum class Verb : std::uint8_t {
   kReceipts,
   kErrors,
   kSim,
+  kScan,
 };
 
 // One command for the bridge, without robot, client and id.
@@ -73,6 +74,9 @@ struct Invocation {
   // sim
   std::string sim_line;  // empty: which words there are
   std::string socket;    // empty: the robot's usual one
+
+  // scan
+  std::string address;  // empty: everybody on the interfaces
 
   // decode
   std::string input;

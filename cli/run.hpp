@@ -19,6 +19,7 @@ ExitCode run_receipts(const Invocation& call, const Report& report);
 ExitCode run_watch(const Invocation& call, const Report& report);
 ExitCode run_topics(const Invocation& call, const Report& report);
 ExitCode run_sim(const Invocation& call, const Report& report);
+ExitCode run_scan(const Invocation& call, const Report& report);
 ExitCode run_decode(const Invocation& call, const Report& report);
 ExitCode run_errors(const Invocation& call, const Report& report);
 

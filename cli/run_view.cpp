@@ -154,6 +154,8 @@ ExitCode run(const Invocation& call, const Report& report) {
       return run_errors(call, report);
     case Verb::kSim:
       return run_sim(call, report);
+    case Verb::kScan:
+      return run_scan(call, report);
   }
   return ExitCode::kArguments;
 }

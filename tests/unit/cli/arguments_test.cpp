@@ -78,6 +78,15 @@ TEST(Arguments, SimTakesWordsAsTheyAreAndNoneForTheirList) {
   EXPECT_THAT(refusal({"sim", "press", "e-stop", "--sockt", "x"}), HasSubstr("did you mean '--socket'?"));
 }
 
+TEST(Arguments, ScanWantsAFieldbusThatItKnows) {
+  const auto call = understood({"scan", "ethernet_ip", "--interface", "eth1", "--address", "192.168.0.100"});
+  EXPECT_EQ(call.verb, Verb::kScan);
+  EXPECT_THAT(call.interfaces, ElementsAre("eth1"));
+  EXPECT_EQ(call.address, "192.168.0.100");
+  EXPECT_THAT(refusal({"scan"}), HasSubstr("scan wants a fieldbus"));
+  EXPECT_THAT(refusal({"scan", "ethernetip"}), HasSubstr("did you mean 'ethernet_ip'?"));
+}
+
 TEST(Arguments, ConnectionOptionsAreTaken) {
   const auto call =
       understood({"watch", "--domain", "7", "--prefix", "cell/", "--interface", "127.0.0.1", "--interface", "10.0.0.1",
