@@ -46,19 +46,30 @@ void RobotLog::look(const CycleRecord& record, Time now, std::vector<LogLine>& l
 }
 
 void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
-  if (record.link != link_ || first_) {
+  const bool up = record.link == LinkState::kUp;
+  const bool changed = up != link_up_ || first_;
+  // What was kept back is said when the quiet time is over and it is still so: the last line is the truth.
+  if (changed || (up != said_up_ && now >= quiet_[up ? kLinkUp : kLinkDown].until)) {
     const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail.view());
-    if (record.link == LinkState::kUp) {
+    const std::size_t before = lines.size();
+    if (up) {
       say(kLinkUp, Level::kInfo, "link up", now, lines);
-    } else if (link_ == LinkState::kUp) {
-      say(kLinkDown, Level::kWarning, "link down" + detail, now, lines);
-    } else if (first_) {
-      say(kLinkUp, Level::kInfo, "no link yet" + detail, now, lines);
-      quiet_[kLinkUp] = {};  // the first "link up" is news
+    } else {
+      say(kLinkDown, first_ ? Level::kInfo : Level::kWarning, (first_ ? "no link yet" : "link down") + detail, now,
+          lines);
+      if (first_) quiet_[kLinkDown] = {};  // the first "link down" is news
     }
-    first_ = false;
-    link_ = record.link;
+    if (lines.size() > before) {
+      said_up_ = up;
+      said_detail_ = record.link_detail;
+    }
+  } else if (!up && !said_up_ && !record.link_detail.empty() && record.link_detail != said_detail_ &&
+             now >= quiet_[kLinkTrouble].until) {
+    say(kLinkTrouble, Level::kWarning, "no link: " + std::string(record.link_detail.view()), now, lines);
+    said_detail_ = record.link_detail;
   }
+  first_ = false;
+  link_up_ = up;
   if (record.firmware_known && !firmware_known_) {
     say(kFirmware, Level::kInfo, "firmware " + to_string(record.firmware), now, lines);
   }

@@ -38,6 +38,7 @@ class RobotLog {
   enum Event {
     kLinkUp,
     kLinkDown,
+    kLinkTrouble,  // another reason why there is no link
     kFirmware,
     kMismatch,
     kOwnerCame,
@@ -66,7 +67,8 @@ class RobotLog {
 
   std::string robot_;
   std::array<Quiet, kEvents> quiet_;
-  transports::LinkState link_ = transports::LinkState::kDown;
+  bool link_up_ = false, said_up_ = false;
+  transports::LinkDetail said_detail_;
   bool first_ = true;
   bool firmware_known_ = false, firmware_mismatch_ = false;
   std::uint16_t error_code_ = 0;

@@ -53,6 +53,30 @@ TEST(RobotLog, ALinkThatFlapsIsCountedAndNotRepeated) {
   EXPECT_THAT(said(log, down, 20s), ElementsAre("arm1: link down (3 more of this kind since the last line)"));
 }
 
+TEST(RobotLog, ALinkThatStaysUpAfterItFlappedIsSaidToBeUpWhenTheQuietTimeIsOver) {
+  RobotLog log("arm1");
+  CycleRecord down;
+  said(log, good(), 0s);
+  EXPECT_THAT(said(log, down, 1s), ElementsAre("arm1: link down"));
+  EXPECT_THAT(said(log, good(), 2s), IsEmpty());
+  EXPECT_THAT(said(log, good(), 9s), IsEmpty());
+  EXPECT_THAT(said(log, good(), 10s), ElementsAre("arm1: link up (1 more of this kind since the last line)"));
+  EXPECT_THAT(said(log, good(), 30s), IsEmpty());
+}
+
+TEST(RobotLog, AnotherReasonWhyThereIsNoLinkIsSaidOnce) {
+  RobotLog log("arm1");
+  CycleRecord down;
+  EXPECT_THAT(said(log, down, 0s), ElementsAre("arm1: no link yet"));
+  down.link_detail = "Forward Open refused: another controller owns the outputs";
+  EXPECT_THAT(said(log, down, 1s),
+              ElementsAre("arm1: no link: Forward Open refused: another controller owns the outputs"));
+  EXPECT_THAT(said(log, down, 2s), IsEmpty());
+  down.link_detail = "no answer";
+  EXPECT_THAT(said(log, down, 3s), IsEmpty());  // not a line for every attempt
+  EXPECT_THAT(said(log, down, 11s), ElementsAre("arm1: no link: no answer"));
+}
+
 TEST(RobotLog, FirmwareIsNamedOnceAndAMismatchIsAnError) {
   RobotLog log("arm1");
   auto record = good();
