@@ -1,5 +1,6 @@
 // What a person or a test says to a simulated robot, and what comes back: one line of words, a request that may cross
-// to the thread that steps the robot, an answer that may cross back, text again. The words are one table in panel.cpp.
+// to the thread that steps the robot, an answer that may cross back, text again. A new word is one row of a table: in
+// panel_robot.cpp what concerns the robot, in panel_network.cpp what concerns the network between it and its host.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "sim/network_faults.hpp"
 #include "sim/robot.hpp"
 
 namespace meca::sim {
@@ -34,7 +36,7 @@ struct PanelStatus {
 };
 
 struct PanelAnswer {
-  enum class Kind : std::uint8_t { kDone, kRefused, kStatus, kJournal, kViolations, kHelp };
+  enum class Kind : std::uint8_t { kDone, kRefused, kStatus, kJournal, kViolations, kHelp, kFaults };
   static constexpr std::size_t kMostListed = 64;
   Kind kind = Kind::kDone;
   std::string_view sentence;  // kDone, kRefused: static text without full stop
@@ -43,10 +45,12 @@ struct PanelAnswer {
   std::size_t listed = 0;
   std::array<JournalEntry, kMostListed> commands{};
   std::array<Violation, kMostListed> violations{};
+  NetworkFaults faults;  // kFaults
 };
 
-// Does what is asked. Only the thread that steps the robot may call it; does not allocate, lock or throw.
-void apply(const PanelRequest& request, Robot& robot, PanelAnswer& answer) noexcept;
+// Does what is asked. Only the thread that steps the robot may call it; does not allocate, lock or throw. `network`:
+// nullptr when there is none between this robot and its host, and its words are refused.
+void apply(const PanelRequest& request, Robot& robot, NetworkFaults* network, PanelAnswer& answer) noexcept;
 
 // "ok: ..." or "error: ...", then the lines of a list, two blanks before each. Every line ends with '\n', none is
 // empty.

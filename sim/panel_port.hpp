@@ -23,11 +23,11 @@ class PanelPort {
 
   // The thread that steps the robot, before each step: at most one request, so that the next one sees what this one
   // did.
-  void serve(Robot& robot) noexcept {
+  void serve(Robot& robot, NetworkFaults* network = nullptr) noexcept {
     const Request* next = requests_.front();
     if (next == nullptr || answers_.size() == answers_.capacity()) return;
     work_.number = next->number;
-    apply(next->request, robot, work_.answer);
+    apply(next->request, robot, network, work_.answer);
     requests_.pop();
     answers_.push(work_);
   }

@@ -103,6 +103,37 @@ std::string help_text() {
   return text;
 }
 
+// As the words that make them.
+std::string faults_text(const NetworkFaults& f) {
+  std::string text;
+  const auto add = [&text](bool on, std::string_view words) {
+    if (on) text += (text.empty() ? "" : ", ") + std::string(words);
+  };
+  const auto with = [](const char* format, auto... numbers) {
+    std::array<char, 64> buffer{};
+    const auto length = std::snprintf(buffer.data(), buffer.size(), format, numbers...);
+    return std::string(buffer.data(), static_cast<std::size_t>(length));
+  };
+  add(f.unplugged, "unplug");
+  add(f.frozen, "freeze");
+  add(f.late > Time::zero(), with("late %.6g", std::chrono::duration<double, std::milli>(f.late).count()));
+  if (f.refuse_open) add(true, with("refuse open 0x%04x", unsigned{*f.refuse_open}));
+  if (f.wrong_size) add(true, with("wrong size %u", unsigned{*f.wrong_size}));
+  if (f.api_us) add(true, with("api %u", unsigned{*f.api_us}));
+  add(f.no_socket_items, "no socket items");
+  if (f.foreign_address) {
+    const std::uint32_t a = f.foreign_address->ipv4;
+    add(true, with("foreign address %u.%u.%u.%u:%u", a >> 24, a >> 16 & 0xFF, a >> 8 & 0xFF, a & 0xFF,
+                   unsigned{f.foreign_address->port}));
+  }
+  add(f.stop_producing, "stop producing");
+  add(f.duplicate, "duplicate");
+  add(f.stale_sequence, "stale sequence");
+  add(f.corrupt, "corrupt");
+  add(f.frozen_count, "frozen count");
+  return text.empty() ? "nothing is wrong with the network" : text;
+}
+
 }  // namespace
 
 std::string panel_error(std::string_view sentence) { return "error: " + std::string(sentence) + "\n"; }
@@ -121,6 +152,8 @@ std::string to_text(const PanelAnswer& answer) {
       return violations_text(answer);
     case PanelAnswer::Kind::kHelp:
       return help_text();
+    case PanelAnswer::Kind::kFaults:
+      return "ok: " + faults_text(answer.faults) + "\n";
   }
   return {};
 }

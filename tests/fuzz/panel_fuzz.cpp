@@ -26,13 +26,14 @@ void check(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static sim::Robot robot;
   static sim::PanelAnswer answer;
+  sim::NetworkFaults network;
   net::LineSplitter lines(kLongest);
   lines.add({reinterpret_cast<const char*>(data), size});
   const auto say = [&](const net::LineSplitter::Line& line) {
     if (line.text.size() > kLongest || line.text.find('\n') != std::string::npos) std::abort();
     const auto parsed = sim::parse_panel_line(line.text);
     if (const auto* complaint = std::get_if<std::string>(&parsed)) return check(sim::panel_error(*complaint));
-    sim::apply(std::get<sim::PanelRequest>(parsed), robot, answer);
+    sim::apply(std::get<sim::PanelRequest>(parsed), robot, &network, answer);
     robot.step_without_outputs(std::chrono::milliseconds(1));
     check(sim::to_text(answer));
   };

@@ -18,8 +18,8 @@ class ControlPanel {
   explicit ControlPanel(std::filesystem::path socket);
 
   // The thread that steps the robot, before each step: does what was asked for meanwhile, one request a call. Does not
-  // allocate, lock, block or throw.
-  void serve(sim::Robot& robot) noexcept { port_.serve(robot); }
+  // allocate, lock, block or throw. `network`: what is between the robot and its host, nullptr for nothing.
+  void serve(sim::Robot& robot, sim::NetworkFaults* network = nullptr) noexcept { port_.serve(robot, network); }
 
   const std::filesystem::path& socket() const noexcept { return server_.path(); }
 

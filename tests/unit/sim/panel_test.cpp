@@ -18,7 +18,7 @@ std::string say(Rig& rig, std::string_view line) {
   const auto parsed = parse_panel_line(line);
   if (const auto* complaint = std::get_if<std::string>(&parsed)) return panel_error(*complaint);
   PanelAnswer answer;
-  apply(std::get<PanelRequest>(parsed), rig.robot, answer);
+  apply(std::get<PanelRequest>(parsed), rig.robot, nullptr, answer);
   rig.step();
   return to_text(answer);
 }
@@ -47,7 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"restore connection", "ok: the connection is not dropped"},
         Said{"raise error 1007", "ok: the robot is in error"}, Said{"power cycle", "ok: the robot starts up"},
         Said{"place part 3",
-             "error: no part fits: there is no gripper (transport.tool), or it is not open wider than the "
+             "error: no part fits: there is no gripper (transport.tool, meca-sim --tool), or it is not open wider than "
+             "the "
              "part"},
         Said{"place obstacle 300 0 200 50", "ok: the obstacle is there"},
         Said{"remove obstacle", "ok: there is no obstacle"}, Said{"push joint 2 -40", "ok: somebody pushes the joint"},
