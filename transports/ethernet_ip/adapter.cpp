@@ -103,6 +103,7 @@ void Adapter::tick(Time now) noexcept {
 void Adapter::set_input(const image::InputBytes& input) noexcept { state_->input = input; }
 bool Adapter::connected() const noexcept { return state_->io.open; }
 bool Adapter::run() const noexcept { return state_->io.open && state_->io.run; }
+std::uint32_t Adapter::originator() const noexcept { return state_->io.open ? state_->io.originator : 0; }
 bool Adapter::take_fresh() noexcept { return std::exchange(state_->io.fresh, false); }
 const image::OutputBytes& Adapter::output() const noexcept { return state_->output; }
 

@@ -58,6 +58,7 @@ struct AdapterFaults {
   bool stale_sequence = false;                   // every second packet carries an old sequence number
   bool corrupt = false;                          // T->O packets of a wrong length
   bool frozen_count = false;                     // the sequence count of class 1 stands still: no new data
+  bool no_socket_items = false;                  // as with AdapterSettings::socket_items off
 };
 
 // What a test or a person may want to know; monotonic.
@@ -116,6 +117,7 @@ class Adapter {
   // The outputs of the owner: valid while it is connected and says run; fresh once for every new packet that says run.
   bool connected() const noexcept;
   bool run() const noexcept;
+  std::uint32_t originator() const noexcept;  // IPv4 of the owner, host byte order; 0 while nobody is connected
   bool take_fresh() noexcept;
   const image::OutputBytes& output() const noexcept;
 

@@ -115,8 +115,8 @@ TcpStream::Count TcpStream::send(std::span<const std::byte> bytes) noexcept {
 Endpoint TcpStream::local() const noexcept { return name_of(file_.get(), ::getsockname); }
 Endpoint TcpStream::peer() const noexcept { return name_of(file_.get(), ::getpeername); }
 
-TcpListener::TcpListener(const Endpoint& local)
-    : file_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+TcpListener::TcpListener(const Endpoint& local, std::uint8_t dscp)
+    : file_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)), dscp_(dscp) {
   const int on = 1;
   const sockaddr_in address = to_sockaddr(local);
   if (file_) ::setsockopt(file_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -137,7 +137,7 @@ TcpListener::TcpListener(const Endpoint& local)
 std::optional<TcpStream> TcpListener::accept() noexcept {
   File file(::accept4(file_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!file) return std::nullopt;
-  prepare(file.get(), 0);
+  prepare(file.get(), dscp_);
   return TcpStream(std::move(file));
 }
 

@@ -46,7 +46,8 @@ class TcpStream {
 class TcpListener {
  public:
   TcpListener() = default;
-  explicit TcpListener(const Endpoint& local);  // throws std::runtime_error with a sentence
+  // Throws std::runtime_error with a sentence. `dscp`: of the streams that are accepted; asked for, not insisted on.
+  explicit TcpListener(const Endpoint& local, std::uint8_t dscp = 0);
 
   std::optional<TcpStream> accept() noexcept;  // nothing: nobody waits
   int descriptor() const noexcept { return file_.get(); }
@@ -54,6 +55,7 @@ class TcpListener {
 
  private:
   File file_;
+  std::uint8_t dscp_ = 0;
 };
 
 }  // namespace meca::net
