@@ -19,10 +19,10 @@ asan() {
 tsan() {
   need build clang
   # Only what has threads: the machines without I/O have none, and instrumenting them proves nothing.
-  build tsan meca-bridge meca-ctl test_bridge test_net test_e2e test_program cyclone_every_topic cyclone_move cyclone_kinematics_test
+  build tsan meca-bridge meca-ctl meca-sim test_bridge test_net test_e2e test_program test_meca_sim_program cyclone_every_topic cyclone_move cyclone_kinematics_test
   TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp halt_on_error=1 second_deadlock_stack=1" \
     ctest --test-dir build/tsan --output-on-failure --no-tests=error -j "$jobs" --timeout 300 \
-    -R '^(bridge|net|e2e|interop|program)\.' "$@"
+    -R '^(bridge|net|e2e|interop|program|sim_program)\.' "$@"
 }
 
 case $which in
