@@ -24,7 +24,7 @@ std::string nobody_listens(const Invocation& call, const std::vector<FoundPanel>
   const std::string others = panels.empty() ? "" : "; there " + std::string(panels.size() == 1 ? "is " : "are ");
   return "no simulated robot " + (call.robot.empty() ? "" : "'" + call.robot + "' ") + "on this machine in domain " +
          std::to_string(call.domain) + " under '" + call.prefix + "'" + others + names_of(panels) +
-         "; is the bridge running here, as this user?";
+         "; is the bridge, or meca-sim, running here, as this user?";
 }
 
 // Throws NoBridge or UsageError with a sentence when there is not exactly one that is meant.
@@ -74,7 +74,8 @@ ExitCode run_sim(const Invocation& call, const Report& report) {
   const FoundPanel panel = choose(call);
   auto client = net::LineClient::connect(panel.socket);
   if (!client)
-    throw NoBridge("nobody listens at '" + panel.socket.string() + "'; is the bridge running here, as this user?");
+    throw NoBridge("nobody listens at '" + panel.socket.string() +
+                   "'; is the bridge, or meca-sim, running here, as this user?");
   const auto timeout = std::chrono::ceil<std::chrono::milliseconds>(discovery_timeout(call));
   const auto answer = client->ask(call.sim_line, timeout);
   if (!answer) {

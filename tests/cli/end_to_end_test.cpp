@@ -306,7 +306,7 @@ TEST_F(MecaCtl, SimAnswersMistakesWithExitCodeOneAndNeedsNoBridgeForItsWords) {
   const auto nobody = ctl({"sim", "status", "--robot", "arm1"});
   EXPECT_EQ(nobody.exit_code, 4);
   EXPECT_THAT(nobody.output, HasSubstr("no simulated robot 'arm1' on this machine in domain 70"));
-  EXPECT_THAT(nobody.output, HasSubstr("is the bridge running here, as this user?"));
+  EXPECT_THAT(nobody.output, HasSubstr("is the bridge, or meca-sim, running here, as this user?"));
 }
 
 TEST_F(MecaCtl, SimFindsItsRobotAmongSeveralByNameOrByItsSocket) {
