@@ -27,11 +27,14 @@ AdapterSettings meca500_at(const std::string& address) {
   return out;
 }
 
-AdapterHost::Sockets::Sockets(std::uint32_t address)
-    : listener({address, kTcpPort}), io({address, kIoPort}, {.multicast_interface = address}) {}
+AdapterHost::Sockets::Sockets(std::uint32_t address, std::uint16_t io_port)
+    : listener({address, kTcpPort}), io({address, io_port}, {.multicast_interface = address}) {}
 
 AdapterHost::AdapterHost(const AdapterSettings& settings, std::optional<sim::RobotOptions> model)
-    : address_(settings.address), adapter_(settings), poller_(kTcp + Adapter::kMostConnections) {
+    : address_(settings.address),
+      io_port_(settings.io_port),
+      adapter_(settings),
+      poller_(kTcp + Adapter::kMostConnections) {
   if (model) {
     layout_ = model->layout;
     model_.emplace(*model);
@@ -44,7 +47,7 @@ AdapterHost::~AdapterHost() = default;
 
 void AdapterHost::plug_in() {
   const std::lock_guard lock(mutex_);
-  sockets_ = std::make_unique<Sockets>(address_);
+  sockets_ = std::make_unique<Sockets>(address_, io_port_);
 }
 
 void AdapterHost::unplug() {

@@ -45,7 +45,7 @@ class AdapterHost {
 
  private:
   struct Sockets {
-    explicit Sockets(std::uint32_t address);
+    Sockets(std::uint32_t address, std::uint16_t io_port);
     net::TcpListener listener;
     net::UdpSocket io;
     std::array<net::TcpStream, ethernet_ip::Adapter::kMostConnections> tcp;
@@ -58,6 +58,7 @@ class AdapterHost {
   void step_model(ethernet_ip::Time now);
 
   std::uint32_t address_;
+  std::uint16_t io_port_;
   std::mutex mutex_;
   ethernet_ip::Adapter adapter_;
   std::optional<sim::Robot> model_;

@@ -2,8 +2,11 @@
 // an address of its own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bridge/bridge.hpp"
 #include "client.hpp"
@@ -65,6 +68,70 @@ TEST(EndToEndOverEthernetIp, ARobotIsActivatedHomedAndMoved) {
     return std::abs(s.joints()[0] - 10) < 1e-3 && std::abs(s.joints()[4] - 20) < 1e-3;
   }));
   EXPECT_EQ(sample.header().quality(), meca500::Quality::GOOD);
+}
+
+TEST(EndToEndOverEthernetIp, ALostRobotIsDisconnectedInEveryTopicAndComesBackToMonitoring) {
+  AdapterHost arm1(meca500_at(kArm1), quick_robot());
+  Bridge bridge(over_ethernet_ip());
+  bridge.start();
+  Client client("tester", kDomain);
+  auto joints = client.reader<meca500::TargetJointSet>("TargetJointSet");
+  auto status = client.reader<meca500::BridgeStatus>("BridgeStatus");
+  auto control = client.reader<meca500::ControlStatus>("ControlStatus");
+  ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::TAKE_CONTROL));
+
+  arm1.unplug();
+  meca500::TargetJointSet sample;
+  EXPECT_TRUE(arrives<meca500::TargetJointSet>(
+      joints, "arm1", sample, [](const auto& s) { return s.header().quality() == meca500::Quality::DISCONNECTED; }));
+  meca500::BridgeStatus said;
+  EXPECT_TRUE(arrives<meca500::BridgeStatus>(status, "arm1", said, [](const auto& s) {
+    return s.link_detail().to_string().find("no packet from 127.0.8.2 for 640 ms") != std::string::npos;
+  })) << said.link_detail().to_string();
+
+  arm1.plug_in();
+  EXPECT_TRUE(arrives<meca500::TargetJointSet>(
+      joints, "arm1", sample, [](const auto& s) { return s.header().quality() == meca500::Quality::GOOD; }));
+  meca500::ControlStatus owner;
+  EXPECT_TRUE(arrives<meca500::ControlStatus>(control, "arm1", owner, [](const auto& s) { return !s.owned(); }));
+}
+
+TEST(EndToEndOverEthernetIp, WhatTheBusCountsIsInBridgeStatus) {
+  AdapterHost arm1(meca500_at(kArm1), quick_robot());
+  Bridge bridge(over_ethernet_ip());
+  bridge.start();
+  Client client("tester", kDomain);
+  auto status = client.reader<meca500::BridgeStatus>("BridgeStatus");
+  meca500::BridgeStatus said;
+  EXPECT_TRUE(arrives<meca500::BridgeStatus>(status, "arm1", said, [](const auto& s) {
+    return std::ranges::any_of(s.transport_counters(), [](const auto& counter) {
+      return counter.name().to_string() == "received_packets" && counter.value() > 10;
+    });
+  }));
+  EXPECT_EQ(said.transport().to_string(), "ethernet_ip");
+  EXPECT_EQ(said.cycle_us(), 10'000U);
+}
+
+TEST(EndToEndOverEthernetIp, ABridgeThatStopsSaysGoodByeToTheRobot) {
+  AdapterHost arm1(meca500_at(kArm1), quick_robot());
+  Bridge bridge(over_ethernet_ip());
+  bridge.start();
+  ASSERT_TRUE(eventually([&] { return arm1.counters().consumed > 3; }));
+  bridge.stop();
+  EXPECT_EQ(arm1.counters().closes, 1U);
+  EXPECT_EQ(arm1.counters().timeouts, 0U);
+}
+
+TEST(EndToEndOverEthernetIp, ATakenPortIsASentence) {
+  const net::UdpSocket first({net::parse_ipv4(kHost).value(), ethernet_ip::kIoPort}, {});
+  try {
+    Bridge bridge(over_ethernet_ip());
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "EtherNet/IP: UDP port 2222 of 127.0.8.1 is taken by another program on this machine; stop it, or "
+                 "choose another port");
+  }
 }
 
 }  // namespace

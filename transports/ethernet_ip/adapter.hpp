@@ -37,6 +37,9 @@ struct AdapterSettings {
   Identity identity;          // 1565 / 43 / 500, revision = firmware
   std::uint32_t address = 0;  // own IPv4, host byte order
   std::uint32_t netmask = 0xFFFFFF00;
+  // Where it takes O->T, UDP: told in the socket address items. Another port than 2222 is for a device on the machine
+  // of its originator, whose socket has that port already.
+  std::uint16_t io_port = kIoPort;
   AdapterKeyPolicy key_policy = AdapterKeyPolicy::kCompatibleSameMajor;
   OwnershipPolicy ownership = OwnershipPolicy::kReleaseOnTimeout;
   bool lenient_rpi = false;  // false: 10 ms to 10 s as the EDS says; true: 1 ms and more

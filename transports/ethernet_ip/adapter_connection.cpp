@@ -160,7 +160,7 @@ SocketItems socket_items_of(const AdapterState& s, bool t_to_o_port_asked) noexc
   };
   SocketItems items;
   const bool wanted = s.settings.socket_items && !s.faults.no_socket_items;
-  if (wanted || s.faults.foreign_address) items.o_to_t = say(0, kIoPort);  // 0.0.0.0: here
+  if (wanted || s.faults.foreign_address) items.o_to_t = say(0, s.settings.io_port);  // 0.0.0.0: here
   if (s.io.multicast) {
     items.t_to_o = say(s.io.to.ipv4, s.io.to.port);
   } else if (items.o_to_t && (t_to_o_port_asked || s.faults.foreign_address)) {

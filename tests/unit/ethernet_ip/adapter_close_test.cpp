@@ -58,6 +58,15 @@ TEST(AdapterMulticast, IsRefusedOffTheSubnet) {
   EXPECT_EQ(rig.open(usual_open()), "ok");
 }
 
+TEST(AdapterSocketItems, NameAnotherPortWhereTheDeviceListensThere) {
+  auto settings = meca500();
+  settings.io_port = 2230;
+  AdapterRig rig(settings);
+  rig.enter();
+  ASSERT_EQ(rig.open(usual_open()), "ok");
+  EXPECT_EQ(rig.socket_item(ItemType::kSocketAddressOToT), (SocketAddress{0, 2230}));
+}
+
 TEST(AdapterMulticast, HasAGroupForEveryHostPartOfTenBits) {
   const auto group_of = [](std::uint32_t address, std::uint32_t netmask) {
     auto settings = meca500();
