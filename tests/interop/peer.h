@@ -11,19 +11,19 @@
 #include "meca500.h"
 
 // Every topic the bridge publishes: X(name). The first are sections with a header, the rest have none.
-#define SECTION_TOPICS(X)                                                                       \
-  X(RobotStatus)                                                                                \
-  X(MotionStatus)                                                                               \
-  X(TargetJointSet)                                                                             \
-  X(TargetEndEffectorPose)                                                                      \
-  X(TargetConfiguration)                                                                        \
-  X(TargetWrf)                                                                                  \
-  X(TargetTrf)                                                                                  \
-  X(RobotTimestamp)                                                                             \
-  X(SafetyStatus)                                                                               \
-  X(DynamicData)                                                                                \
-  X(CyclicState) X(RobotControl) X(MotionControl) X(MotionCommand) X(HostTime) X(BrakesControl) \
-      X(DynamicDataConfiguration)
+#define SECTION_TOPICS(X)  \
+  X(RobotStatus)           \
+  X(MotionStatus)          \
+  X(TargetJointSet)        \
+  X(TargetEndEffectorPose) \
+  X(TargetConfiguration)   \
+  X(TargetWrf)             \
+  X(TargetTrf)             \
+  X(RobotTimestamp)        \
+  X(SafetyStatus)          \
+  X(DynamicData)           \
+  X(CyclicState)           \
+  X(RobotControl) X(MotionControl) X(MotionCommand) X(HostTime) X(BrakesControl) X(DynamicDataConfiguration)
 #define OTHER_TOPICS(X) X(BridgeStatus) X(ControlStatus) X(CommandReceipt)
 
 #define ROBOT "arm1"

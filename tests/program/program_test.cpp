@@ -170,6 +170,13 @@ TEST(Program, ChecksEveryFileOfTheConfigFolderAndSaysWhatItWouldRun) {
   }
 }
 
+TEST(Program, SaysHowItWouldReachARobotOnEtherNetIp) {
+  const Outcome outcome = meca_bridge({"--check", "--config", kSource + "/config/ethernet_ip.yaml"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("arm1: ethernet_ip (192.168.0.100:44818, RPI 10ms, watchdog 160ms), cycle 10ms, "
+                                     "control on\n"));
+}
+
 TEST(Program, PrintsWarningsAndRunsAllTheSame) {
   const TemporaryFile file("dds: {topics: {RobotStatus: {rate: 500us}}}\n" + std::string(kOneRobot));
   const Outcome outcome = meca_bridge({"--check", "--config", file.path()});
@@ -184,6 +191,24 @@ TEST(Program, LeavesWithFourWhenDdsCannotBeOpened) {
   const Outcome outcome = meca_bridge({"--config", file.path()});
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.err, HasSubstr("203.0.113.7"));
+}
+
+constexpr const char* kOneAbsentRobot =
+    "dds: {domain: 43, interfaces: [127.0.0.1]}\n"
+    "robots: [{name: arm1, transport: {type: ethernet_ip, address: 127.0.11.2}}]\n";
+
+TEST(Program, LeavesWithFourWhenTheAddressOfTheFieldbusIsNotOurs) {
+  const TemporaryFile file("ethernet_ip: {bind: 203.0.113.7}\n" + std::string(kOneAbsentRobot));
+  const Outcome outcome = meca_bridge({"--config", file.path()});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("EtherNet/IP: 203.0.113.7 is not an address of this machine\n"));
+}
+
+TEST(Program, WaitsForARobotThatIsNotThereAndLeavesWithZeroWhenAskedToStop) {
+  const TemporaryFile file("ethernet_ip: {bind: 127.0.11.1}\n" + std::string(kOneAbsentRobot));
+  const Outcome outcome = meca_bridge({"--config", file.path()}, "arm1: no link yet", SIGTERM);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::EndsWith("info stopped\n"));
 }
 
 TEST(Program, RunsUntilItIsAskedToStopAndLeavesWithZero) {

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -261,6 +264,14 @@ TEST(EthernetIpTransport, SaysWhatKeepsItFromOpening) {
   to_group.multicast = true;
   EXPECT_EQ(sentence([&] { open(usual_bus(), {to_group}); }),
             "multicast does not reach a socket that is bound to 127.0.7.1; bind to 0.0.0.0, or ask for point-to-point");
+}
+
+TEST(EthernetIpTransport, ExplainsEveryCounterInItsExample) {
+  std::ifstream in(std::string(MECA_SOURCE_DIR) + "/config/ethernet_ip.yaml");
+  const std::string example{std::istreambuf_iterator<char>(in), {}};
+  const auto counters = make_transport({}, usual_bus())->counters();
+  EXPECT_GE(counters.size(), 20U);
+  for (const auto& counter : counters) EXPECT_THAT(example, HasSubstr(std::string(counter.name)));
 }
 
 TEST(MultiplierCode, IsThePowerOfTwoBelow) {

@@ -53,7 +53,8 @@ inline bool eventually(const std::function<bool()>& condition) {
 // Turns a bus as the bridge's loop does.
 class Turner {
  public:
-  explicit Turner(std::vector<ethernet_ip::RobotOptions> robots, const ethernet_ip::BusOptions& options = usual_bus(), Time cycle = kCycle)
+  explicit Turner(std::vector<ethernet_ip::RobotOptions> robots, const ethernet_ip::BusOptions& options = usual_bus(),
+                  Time cycle = kCycle)
       : exchanges(robots.size()), cycle_(cycle), bus_(ethernet_ip::make_transport(std::move(robots), options)) {
     bus_->open(net::monotonic());
     deadline_ = net::monotonic();
@@ -78,8 +79,9 @@ class Turner {
     return true;
   }
   bool until_up() {
-    return until(
-        [&] { return std::ranges::all_of(exchanges, [](const auto& e) { return e.link == transports::LinkState::kUp; }); });
+    return until([&] {
+      return std::ranges::all_of(exchanges, [](const auto& e) { return e.link == transports::LinkState::kUp; });
+    });
   }
 
   std::int64_t counter(std::string_view name, std::size_t robot = 0) const {

@@ -31,7 +31,8 @@ std::string why_not(const Endpoint& local) {
   const std::string at = local.ipv4 != 0 ? " of " + to_string(local.ipv4) : "";
   switch (errno) {
     case EADDRINUSE:
-      return port + at + " is taken by another program on this machine; stop it, or choose another port";
+      return port + at + " is taken by another program on this machine; stop it, " +
+             (local.ipv4 == 0 ? "bind to one address, " : "") + "or choose another port";
     case EADDRNOTAVAIL:
       return to_string(local.ipv4) + " is not an address of this machine";
     case EACCES:

@@ -123,6 +123,11 @@ TEST(Udp, SaysWhyAPortCannotBeHad) {
   EXPECT_EQ(sentence([&] { UdpSocket second(taken, {}); }),
             "UDP port " + std::to_string(taken.port) +
                 " of 127.0.0.1 is taken by another program on this machine; stop it, or choose another port");
+  EXPECT_EQ(sentence([&] {
+              UdpSocket everywhere({0, taken.port}, {});
+            }),
+            "UDP port " + std::to_string(taken.port) +
+                " is taken by another program on this machine; stop it, bind to one address, or choose another port");
   EXPECT_EQ(sentence([] { UdpSocket elsewhere({kNobody, 0}, {}); }), "192.0.2.1 is not an address of this machine");
 }
 
