@@ -22,7 +22,7 @@ using bridge::Bridge;
 using bridge::Config;
 
 constexpr int kDomain = 52;
-const std::string kHost = "127.0.8.1", kArm1 = "127.0.8.2";
+const std::string kHost = "127.0.8.1", kArm1 = "127.0.8.2", kArm2 = "127.0.8.3";
 
 // Activated and homed as soon as it is asked.
 sim::RobotOptions quick_robot() {
@@ -94,6 +94,35 @@ TEST(EndToEndOverEthernetIp, ALostRobotIsDisconnectedInEveryTopicAndComesBackToM
       joints, "arm1", sample, [](const auto& s) { return s.header().quality() == meca500::Quality::GOOD; }));
   meca500::ControlStatus owner;
   EXPECT_TRUE(arrives<meca500::ControlStatus>(control, "arm1", owner, [](const auto& s) { return !s.owned(); }));
+}
+
+TEST(EndToEndOverEthernetIp, RobotsOfSeveralKindsLiveInOneBridge) {
+  AdapterHost arm1(meca500_at(kArm1), quick_robot()), arm2(meca500_at(kArm2), quick_robot());
+  Config config = over_ethernet_ip();
+  config.robots.push_back(config.robots[0]);
+  config.robots[1].name = "arm2";
+  config.robots[1].ethernet_ip.address = kArm2;
+  config.robots[1].cycle = 20ms;  // asks for packets half as often; its bus turns with the faster one
+  config.robots.emplace_back();
+  config.robots[2].name = "built-in";
+  config.robots[2].control.lease = 2s;
+  Bridge bridge(config);
+  bridge.start();
+  Client client("tester", kDomain);
+  auto status = client.reader<meca500::BridgeStatus>("BridgeStatus");
+  for (const auto* name : {"arm1", "arm2", "built-in"}) {
+    ASSERT_NO_FATAL_FAILURE(client.complete(name, meca500::CommandKind::TAKE_CONTROL)) << name;
+  }
+  meca500::BridgeStatus said;
+  EXPECT_TRUE(arrives<meca500::BridgeStatus>(status, "arm2", said, [](const auto& s) {
+    return std::ranges::any_of(s.transport_counters(), [](const auto& counter) {
+      return counter.name().to_string() == "api_t_to_o" && counter.value() == 20'000;
+    });
+  }));
+  EXPECT_EQ(said.cycle_us(), 10'000U);
+  EXPECT_TRUE(arrives<meca500::BridgeStatus>(status, "built-in", said, [](const auto&) { return true; }));
+  EXPECT_EQ(said.transport().to_string(), "builtin");
+  EXPECT_EQ(said.cycle_us(), 1'000U);
 }
 
 TEST(EndToEndOverEthernetIp, WhatTheBusCountsIsInBridgeStatus) {
