@@ -252,9 +252,9 @@ TEST_F(MecaCtl, HealthIsOneLineAndFailsWhenTheBridgeIsGoneOrHangs) {
 
 TEST_F(MecaCtl, WaitingEndsWithExitCodeFiveAndSaysThatTheCommandGoesOn) {
   make_ready();
-  const auto result = ctl({"send", "Delay", "600", "--wait", "--timeout", "2"});
+  const auto result = ctl({"send", "Delay", "600", "--wait", "--timeout", "8"});
   EXPECT_EQ(result.exit_code, 5);
-  EXPECT_THAT(result.output, HasSubstr("Delay: not finished after 2.0 s"));
+  EXPECT_THAT(result.output, HasSubstr("Delay: not finished after 8.0 s"));
   EXPECT_THAT(result.output, HasSubstr("it goes on"));
 }
 
