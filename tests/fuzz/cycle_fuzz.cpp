@@ -9,8 +9,11 @@
 #include <memory>
 
 #include "bridge/cycle.hpp"
+#include "tests/fuzz/source.hpp"
 
 namespace {
+
+using meca::fuzz::Source;
 
 using namespace meca;
 
@@ -19,26 +22,6 @@ void require(bool condition, const char* what) {
   std::fprintf(stderr, "cycle_fuzz: %s\n", what);
   std::abort();
 }
-
-// Bytes of the input, zeros when it has ended.
-class Source {
- public:
-  Source(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  bool empty() const { return size_ == 0; }
-  template <typename T>
-  T take() {
-    T value{};
-    const std::size_t n = std::min(sizeof(T), size_);
-    if (n != 0) std::memcpy(&value, data_, n);
-    data_ += n;
-    size_ -= n;
-    return value;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_;
-};
 
 control::Request take_request(Source& source) {
   const auto client = control::ClientName(source.take<std::uint8_t>() % 2 != 0 ? "one" : "two");

@@ -2,28 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 
+#include "tests/counted_new.hpp"
 #include "tests/session/turner.hpp"
-
-namespace {
-// Of each thread its own: the robot's thread may do as it likes.
-thread_local std::uint64_t allocations = 0;
-}  // namespace
-
-// Replaces the global ones for this test program; the array forms end here too.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size != 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size != 0 ? size : 1);
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace meca::test {
 namespace {

@@ -1,21 +1,7 @@
 // Cycle::step runs on the cycle thread: after construction it allocates nothing, whatever happens.
-#include <cstdlib>
-#include <new>
 
+#include "tests/counted_new.hpp"
 #include "tests/unit/control/bench.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-// Counted for this whole test program.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace meca::test {
 namespace {

@@ -1,37 +1,15 @@
 // The adapter shares the thread of the simulated robot: after construction it must not allocate.
-#include <atomic>
-#include <cstdlib>
-#include <new>
 
+#include "tests/counted_new.hpp"
 #include "tests/unit/ethernet_ip/adapter_rig.hpp"
-
-namespace {
-std::atomic<std::uint64_t> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size != 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-// Replaces the global ones for this test program; the array forms end here too. The nothrow form would as well, but
-// AddressSanitizer brings one of its own, and googletest 1.16 uses it: freeing that here would be a mismatch.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size != 0 ? size : 1);
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace meca::ethernet_ip::adapter_test {
 namespace {
 
 TEST(AdapterAllocation, IsCountedByThisProgram) {
-  const auto before = allocations.load();
+  const auto before = test::allocations;
   delete new int(1);
-  EXPECT_GT(allocations.load(), before);
+  EXPECT_GT(test::allocations, before);
 }
 
 TEST(AdapterAllocation, NeverHappensAfterConstruction) {
@@ -46,7 +24,7 @@ TEST(AdapterAllocation, NeverHappensAfterConstruction) {
   });
   image::InputBytes input{};
 
-  const auto before = allocations.load();
+  const auto before = test::allocations;
   for (std::uint32_t i = 1; i <= 1000; ++i, rig.now += 10ms) {
     rig.adapter.tcp_accepted(1, kStranger, rig.now);
     rig.adapter.tcp_received(0, request, rig.now);
@@ -60,7 +38,7 @@ TEST(AdapterAllocation, NeverHappensAfterConstruction) {
     }
     rig.adapter.tcp_closed(1, rig.now);
   }
-  EXPECT_EQ(allocations.load(), before);
+  EXPECT_EQ(test::allocations, before);
   EXPECT_EQ(rig.adapter.counters().produced, 1000u);
   EXPECT_TRUE(rig.adapter.connected());
 }

@@ -1,40 +1,18 @@
 // A step of the robot belongs on the cycle thread: it must not allocate.
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <string>
 
 #include "sim/panel_port.hpp"
+#include "tests/counted_new.hpp"
 #include "tests/unit/sim/rig.hpp"
 #include "transports/builtin/builtin.hpp"
-
-namespace {
-std::atomic<std::uint64_t> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size != 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-// Replaces the global ones for this test program; the array forms end here too. The nothrow form would as well, but
-// AddressSanitizer brings one of its own, and googletest 1.16 uses it: freeing that here would be a mismatch.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size != 0 ? size : 1);
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace meca::sim {
 namespace {
 
 TEST(Allocation, IsCountedByThisProgram) {
-  const auto before = allocations.load();
+  const auto before = test::allocations;
   delete new int(1);
-  EXPECT_GT(allocations.load(), before);
+  EXPECT_GT(test::allocations, before);
 }
 
 TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
@@ -44,9 +22,9 @@ TEST(Allocation, NeverHappensInAStepWhateverTheRobotDoes) {
   Rig rig(options);
   std::uint64_t while_stepping = 0;
   const auto steps = [&](int count) {
-    const auto before = allocations.load();
+    const auto before = test::allocations;
     for (int i = 0; i < count; ++i) rig.robot.step(rig.out, std::chrono::milliseconds(1));
-    while_stepping += allocations.load() - before;
+    while_stepping += test::allocations - before;
   };
   const auto command = [&](std::uint32_t id, std::array<float, 6> arguments) {
     ++rig.out.motion_control.move_id;
@@ -109,12 +87,12 @@ TEST(Allocation, NeverHappensWhenAButtonIsPressed) {
     const auto parsed = parse_panel_line(line);
     const auto* request = std::get_if<PanelRequest>(&parsed);
     ASSERT_NE(request, nullptr) << std::get<std::string>(parsed);
-    const auto before = allocations.load();
+    const auto before = test::allocations;
     EXPECT_TRUE(port.ask(*request));
     port.serve(rig.robot);
     rig.robot.step(rig.out, std::chrono::milliseconds(1));
     EXPECT_NE(port.answer(), nullptr);
-    EXPECT_EQ(allocations.load(), before) << line;
+    EXPECT_EQ(test::allocations, before) << line;
   }
 }
 
@@ -122,9 +100,9 @@ TEST(Allocation, NeverHappensInAnExchangeOfTheBuiltInTransport) {
   const auto bus = transports::make_builtin({RobotOptions{}, RobotOptions{}});
   bus->open(Time(0));
   std::array<transports::Exchange, 2> exchanges{};
-  const auto before = allocations.load();
+  const auto before = test::allocations;
   for (int i = 1; i < 1000; ++i) bus->exchange(i * std::chrono::milliseconds(1), exchanges);
-  EXPECT_EQ(allocations.load(), before);
+  EXPECT_EQ(test::allocations, before);
 }
 
 }  // namespace
