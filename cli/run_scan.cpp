@@ -7,13 +7,12 @@
 #include "cli/plan.hpp"
 #include "cli/run.hpp"
 #include "cli/scan.hpp"
+#include "transports/net/clock.hpp"
+#include "transports/net/poller.hpp"
 #include "transports/net/udp.hpp"
-#include "transports/net/wait.hpp"
 
 namespace meca::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 net::UdpSocket open_socket(std::uint32_t from) try {
   return net::UdpSocket({from, 0}, {.broadcast = true});
@@ -58,13 +57,13 @@ ExitCode run_scan(const Invocation& call, const Report& report) {
   const auto targets = scan_targets(call, net::ipv4_interfaces());
   const auto wait = call.timeout_s ? seconds_of(*call.timeout_s) : std::chrono::nanoseconds(kScanWait);
   auto sockets = ask(targets, answer_delay(wait));
-  std::vector<int> descriptors;
-  for (const auto& socket : sockets) descriptors.push_back(socket.descriptor());
+  net::Poller poller(sockets.size());
+  for (std::size_t i = 0; i < sockets.size(); ++i) poller.watch(i, sockets[i].descriptor());
 
   ethernet_ip::Discovery discovery;
-  const auto end = Clock::now() + wait;
-  while (!interrupted && Clock::now() < end && !complete(targets, discovery)) {
-    net::wait_readable(descriptors, end - Clock::now());
+  const auto end = net::monotonic() + wait;
+  while (!interrupted && net::monotonic() < end && !complete(targets, discovery)) {
+    poller.wait(end);
     listen(sockets, discovery);
   }
   if (interrupted) return ExitCode::kInterrupted;

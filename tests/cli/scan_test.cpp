@@ -10,8 +10,9 @@
 
 #include "tests/cli/process.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
+#include "transports/net/clock.hpp"
+#include "transports/net/poller.hpp"
 #include "transports/net/udp.hpp"
-#include "transports/net/wait.hpp"
 
 namespace meca::test {
 namespace {
@@ -48,9 +49,10 @@ class Device {
   void serve() {
     ethernet_ip::Adapter adapter(settings());
     std::array<std::byte, 1500> buffer;
-    const std::array descriptors{socket_.descriptor()};
+    net::Poller poller(1);
+    poller.watch(0, socket_.descriptor());
     while (!stop_) {
-      net::wait_readable(descriptors, 10ms);
+      poller.wait(net::monotonic() + 10ms);
       while (const auto received = socket_.receive(buffer)) {
         const auto answer = adapter.udp_received(std::span(buffer).first(received->size), false);
         if (!answer.bytes.empty()) socket_.send(received->from, answer.bytes);
