@@ -1,4 +1,4 @@
-// A bridge on built-in robots in a process of its own.
+// A bridge in a process of its own, and what the scenarios share around it.
 #pragma once
 
 #include <filesystem>
@@ -22,5 +22,12 @@ struct BridgeProcess {
 
 // The command line of this program in one of its hidden roles.
 std::vector<std::string> role(const char* name, const Setting& setting);
+std::vector<std::string> role(const char* name, const Setting& setting, std::chrono::seconds duration);
+
+// CPUs that the process keeps busy, over the duration.
+double cpu_share(const Process& process, std::chrono::seconds duration);
+
+// 0 when the yardstick is.
+double ratio(const nlohmann::ordered_json& ours, const nlohmann::ordered_json& yardstick);
 
 }  // namespace meca::bench

@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include "tests/bench/deaths.hpp"
+#include "tests/bench/eip_cell.hpp"
+#include "tests/bench/eip_scenarios.hpp"
 #include "tests/bench/fight.hpp"
 #include "tests/bench/fighter.hpp"
 #include "tests/bench/owner.hpp"
@@ -54,6 +56,9 @@ int main(int argc, char** argv) try {
   scenario("cpu", "CPU per robot at 1 kHz for 1, 4, 16, 64 robots", measure_cpu);
   scenario("wakeup", "Lateness of the cycle thread", measure_wakeup);
   scenario("stopped-reader", "Missed cycles of four robots with a stopped reliable reader", measure_stopped_reader);
+  scenario("ethernet-ip-period", "How regular O->T is on the wire at 10 ms and 2 ms", measure_eip_period);
+  scenario("ethernet-ip-latency", "T->O packet -> sample in another process", measure_eip_latency);
+  scenario("ethernet-ip-robots", "1, 8, 32 EtherNet/IP robots at 10 ms: CPU, losses, regularity", measure_eip_robots);
 
   // Proofs: their exit code says whether the promise held, or that this machine could not tell.
   std::vector<std::string> broken, not_told;
@@ -84,9 +89,17 @@ int main(int argc, char** argv) try {
         [&] { return prove_throughput(setting); });
 
   // The other ends of the measurements, started by the scenarios.
-  app.add_subcommand("latency-reader", "")->group("")->callback([&] {
-    run_latency_reader(setting.domain, std::chrono::seconds(seconds));
-  });
+  bool from_robot = false;
+  auto* latency_role = app.add_subcommand("latency-reader", "")->group("");
+  latency_role->add_flag("--from-robot", from_robot);
+  latency_role->callback([&] { run_latency_reader(setting.domain, std::chrono::seconds(seconds), from_robot); });
+  long period_us = 10'000;
+  int streams = 1;
+  auto* bare_role = app.add_subcommand("bare-sender", "")->group("");
+  bare_role->add_option("--period-us", period_us);
+  bare_role->add_option("--streams", streams);
+  bare_role->callback(
+      [&] { run_bare_sender(std::chrono::microseconds(period_us), streams, std::chrono::seconds(seconds)); });
   app.add_subcommand("counting-reader", "")->group("")->callback([&] {
     run_counting_reader(setting.domain, std::chrono::seconds(seconds));
   });

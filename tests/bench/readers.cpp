@@ -24,6 +24,11 @@ dds::ParticipantOptions participant(int domain) {
   return options;
 }
 
+std::int64_t robot_stamp_ns(const meca500::CyclicState& sample) {
+  const auto& stamp = sample.robot_timestamp();
+  return (static_cast<std::int64_t>(stamp.seconds()) * 1'000'000 + stamp.microseconds()) * 1000;
+}
+
 // Takes everything that a topic has; returns how much that was.
 template <typename T>
 std::function<long()> counter(dds::Participant& p, const char* name) {
@@ -38,13 +43,15 @@ std::function<long()> counter(dds::Participant& p, const char* name) {
 
 }  // namespace
 
-void run_latency_reader(int domain, std::chrono::seconds duration) {
+void run_latency_reader(int domain, std::chrono::seconds duration, bool from_robot) {
   dds::Participant p(participant(domain));
   auto reader = p.create_reader<meca500::CyclicState>("meca500/CyclicState", kReliable);
   meca500::CyclicState sample;
   dds::SampleInfo info;
-  std::vector<double> latencies_us;
+  std::vector<double> latencies_us, to_bridge_us;
   latencies_us.reserve(1'000'000);
+  to_bridge_us.reserve(1'000'000);
+  std::int64_t last_image_ns = 0;
   // Time runs from the first sample: discovery is not what is measured.
   std::chrono::nanoseconds end = monotonic_now() + std::chrono::seconds(20);
   while (monotonic_now() < end) {
@@ -52,13 +59,22 @@ void run_latency_reader(int domain, std::chrono::seconds duration) {
     while (reader.take(sample, info)) {
       if (!info.valid_data) continue;
       if (latencies_us.empty()) end = monotonic_now() + duration;
-      latencies_us.push_back(static_cast<double>(unix_now_ns() - sample.header().receive_time_ns()) / 1000.0);
+      const std::int64_t now = unix_now_ns(), received = sample.header().receive_time_ns();
+      const std::int64_t begin = from_robot ? robot_stamp_ns(sample) : received;
+      if (from_robot && begin == last_image_ns) continue;
+      last_image_ns = begin;
+      latencies_us.push_back(static_cast<double>(now - begin) / 1000.0);
+      to_bridge_us.push_back(static_cast<double>(received - begin) / 1000.0);
     }
   }
   nlohmann::json result;
   result["samples"] = latencies_us.size();
   result["p50_us"] = percentile(latencies_us, 0.50);
   result["p99_us"] = percentile(latencies_us, 0.99);
+  if (from_robot) {
+    result["to_bridge_p50_us"] = percentile(to_bridge_us, 0.50);
+    result["to_bridge_p99_us"] = percentile(to_bridge_us, 0.99);
+  }
   std::printf("%s\n", result.dump().c_str());
 }
 

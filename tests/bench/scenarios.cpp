@@ -3,19 +3,14 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <functional>
-#include <map>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
 
-#include "bridge/dds.hpp"
-#include "idl/types.hpp"
 #include "tests/bench/bridge_process.hpp"
 #include "tests/bench/clock.hpp"
 #include "tests/bench/process.hpp"
+#include "tests/bench/status_watch.hpp"
 
 namespace meca::bench {
 namespace {
@@ -33,69 +28,6 @@ std::string configuration(const Setting& setting, int robots, bool whole_image =
   }
   return out.str();
 }
-
-std::vector<std::string> role(const char* name, const Setting& setting, seconds duration) {
-  auto command = role(name, setting);
-  command.insert(command.end(), {"--seconds", std::to_string(duration.count())});
-  return command;
-}
-
-double cpu_share(const Process& process, seconds duration) {
-  const double before = process.cpu_seconds();
-  const auto begin = monotonic_now();
-  std::this_thread::sleep_for(duration);
-  const std::chrono::duration<double> elapsed = monotonic_now() - begin;
-  return (process.cpu_seconds() - before) / elapsed.count();
-}
-
-double ratio(const json& ours, const json& yardstick) {
-  const double base = yardstick.get<double>();
-  return base > 0 ? ours.get<double>() / base : 0;
-}
-
-// The last BridgeStatus of every robot, and the worst and the mean of the lateness they reported on the way.
-struct StatusWatch {
-  explicit StatusWatch(const Setting& setting) : participant(options(setting)) {
-    reader = participant.create_reader<meca500::BridgeStatus>(
-        "meca500/BridgeStatus", {dds::Reliability::kReliable, dds::Durability::kTransientLocal, 10});
-  }
-  void run(seconds duration) {
-    const auto end = monotonic_now() + duration;
-    lateness_max_us = 0;
-    mean_sum_us = 0;
-    means = 0;
-    meca500::BridgeStatus sample;
-    dds::SampleInfo info;
-    while (monotonic_now() < end) {
-      participant.wait_for_data(std::chrono::milliseconds(100));
-      while (reader.take(sample, info)) {
-        if (!info.valid_data) continue;
-        last[sample.robot().c_str()] = sample;
-        lateness_max_us = std::max(lateness_max_us, static_cast<double>(sample.wakeup_lateness_max_us()));
-        mean_sum_us += sample.wakeup_lateness_mean_us();
-        ++means;
-      }
-    }
-    if (last.empty())
-      throw std::runtime_error("no BridgeStatus arrived within " + std::to_string(duration.count()) + " s");
-  }
-  unsigned long long total(const std::function<unsigned long long(const meca500::BridgeStatus&)>& of) const {
-    unsigned long long sum = 0;
-    for (const auto& [robot, status] : last) sum += of(status);
-    return sum;
-  }
-  static dds::ParticipantOptions options(const Setting& setting) {
-    dds::ParticipantOptions o;
-    o.domain = setting.domain;
-    o.name = "bench-status";
-    return o;
-  }
-  dds::Participant participant;
-  dds::Reader<meca500::BridgeStatus> reader;
-  std::map<std::string, meca500::BridgeStatus> last;
-  double lateness_max_us = 0, mean_sum_us = 0;
-  long means = 0;
-};
 
 struct BareLoop {
   double mean_us = 0, max_us = 0;
