@@ -324,7 +324,7 @@ TEST(Mapping, BridgeStatusNamesWhatTheFieldbusCountsAndLeavesNothingOfALongerLis
   record.transport_counters = {3, -4, 5};
   meca500::BridgeStatus sample;
   sample.transport_counters().resize(4);
-  fill(record, {}, {.counters = kNames}, sample);
+  fill(record, {}, {.transport = "ethernet_ip", .counters = kNames}, sample);
   ASSERT_EQ(sample.transport_counters().size(), 2U);
   EXPECT_EQ(sample.transport_counters()[0].name().to_string(), "lost_packets");
   EXPECT_EQ(sample.transport_counters()[0].unit().to_string(), "");
