@@ -54,8 +54,9 @@ class MecaCtl : public testing::Test {
          << "\nrobots:\n";
     for (const auto& robot : robots) {
       file << "  - name: " << robot << "\n    transport:\n      type: builtin\n      instant_homing: true\n";
+      if (&robot == &robots.back()) file << last;
+      file << "    control: {lease: 2s}\n";  // the machine may be busy; the short lease has tests of its own
     }
-    file << last;
     file.close();
     bridge_.emplace(std::vector<std::string>{MECA_BRIDGE, "--config", config_});
     const auto health = ctl({"health", "--timeout", "20"});
