@@ -64,6 +64,13 @@ std::optional<meca500::CommandReceipt> Client::next_receipt(std::uint64_t comman
   return std::nullopt;
 }
 
+bool Client::bridge_gone() {
+  const auto found = observer_.robots().find(robot_);
+  if (found == observer_.robots().end() || !found->second.bridge) return false;
+  const std::uint64_t before = std::exchange(bridge_cycles_, found->second.bridge->cycles());
+  return bridge_cycles_ < before || commands_.matched() == 0;
+}
+
 Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds timeout, const Progress& progress) {
   const meca500::Command command = make_command(plan, until);
   const auto start = Clock::now();
@@ -86,6 +93,10 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
       progress(*receipt);
       if (!is_enough(*receipt, plan, until)) continue;
       outcome.ended = Ended::kReached;
+      return outcome;
+    }
+    if (bridge_gone() && outcome.last) {
+      outcome.ended = Ended::kBridgeGone;
       return outcome;
     }
   }

@@ -16,7 +16,7 @@ enum class WaitFor : std::uint8_t {
   kEnd,           // a terminal receipt; motion: executed
 };
 
-enum class Ended : std::uint8_t { kReached, kTimeOut, kInterrupted };
+enum class Ended : std::uint8_t { kReached, kTimeOut, kInterrupted, kBridgeGone };
 
 struct Outcome {
   Ended ended = Ended::kTimeOut;
@@ -51,6 +51,8 @@ class Client {
  private:
   meca500::Command make_command(const CommandPlan& plan, WaitFor until);
   std::optional<meca500::CommandReceipt> next_receipt(std::uint64_t command_id);
+  // The bridge that answered has left without a word, or another one has its place, which knows nothing of our command.
+  bool bridge_gone();
 
   Bus& bus_;
   Observer& observer_;
@@ -62,6 +64,7 @@ class Client {
   std::uint64_t next_id_;
   std::uint64_t lease_number_ = 0;
   std::uint64_t velocity_number_ = 0;
+  std::uint64_t bridge_cycles_ = 0;  // of the bridge, as it said last
   bool accepted_ = false;
   Clock::time_point last_renewal_{};
 };

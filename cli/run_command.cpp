@@ -39,6 +39,11 @@ ExitCode exit_code_of(const Outcome& outcome, const Invocation& call, const Repo
                           title + ": interrupted; what the robot has queued goes on, 'meca-ctl pause' stops it");
     case Ended::kTimeOut:
       return no_answer(outcome, call, report, title);
+    case Ended::kBridgeGone:
+      return report.error(ExitCode::kNoBridge,
+                          title + ": the bridge that took it is gone, or was started again; last it was " +
+                              std::string(name(outcome.last->state())) +
+                              ", what became of it is not known; look where the arm is before sending it again");
     case Ended::kReached:
       break;
   }
