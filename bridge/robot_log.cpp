@@ -53,7 +53,7 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
     const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail.view());
     const std::size_t before = lines.size();
     if (up) {
-      say(kLinkUp, Level::kInfo, "link up", now, lines);
+      say(kLinkUp, Level::kInfo, "link up" + detail, now, lines);
     } else {
       say(kLinkDown, first_ ? Level::kInfo : Level::kWarning, (first_ ? "no link yet" : "link down") + detail, now,
           lines);

@@ -128,7 +128,8 @@ class Originator {
   const image::InputBytes& input() const noexcept;  // last accepted
   bool take_fresh() noexcept;                       // a new image since the last call
   // Why it is not running, a sentence without full stop that names what was asked, what the robot said and what to do;
-  // empty while nothing is wrong. What was last wrong stays until the connection runs.
+  // empty while nothing is wrong. What was last wrong stays until the connection runs; then it is what the robot
+  // granted, if that is not what was asked.
   std::string_view trouble() const noexcept { return trouble_.view(); }
   const std::optional<Identity>& identity() const noexcept { return identity_; }
   std::uint32_t o_to_t_api_us() const noexcept { return o_to_t_api_us_; }  // 0 while not open
@@ -186,6 +187,7 @@ class Originator {
   void packet_received(const IoPacket& packet, Time now) noexcept;
   Time watchdog() const noexcept;
   Text silence() const noexcept;
+  Text other_intervals() const noexcept;
 
   OriginatorSettings settings_;
   State state_ = State::kWaiting;

@@ -70,7 +70,7 @@ void Originator::packet_received(const IoPacket& packet, Time now) noexcept {
   if (receiving_) counters_.lost += packet.sequence - received_sequence_ - 1;
   if (!receiving_) {
     first_packet_at_ = now;
-    trouble_ = {};
+    trouble_ = other_intervals();
   }
   receiving_ = true;
   unexpected_size_ = 0;
@@ -84,6 +84,17 @@ void Originator::packet_received(const IoPacket& packet, Time now) noexcept {
   ++counters_.received;
   std::ranges::copy(packet.data.subspan(kCountSize), input_.begin());
   fresh_ = true;
+}
+
+// What the robot granted, where it is not what was asked for.
+Originator::Text Originator::other_intervals() const noexcept {
+  if (o_to_t_api_us_ == settings_.o_to_t_rpi_us && t_to_o_api_us_ == settings_.t_to_o_rpi_us) return {};
+  const auto ms = [](std::uint32_t us) { return milliseconds(microseconds(us)); };
+  return Text::format(
+      "the robot grants a packet interval of %.10g ms O->T and %.10g ms T->O, %.10g and %.10g ms were asked for; the "
+      "watchdog is %.10g ms; set rpi to what it grants if it stays so",
+      ms(o_to_t_api_us_), ms(t_to_o_api_us_), ms(settings_.o_to_t_rpi_us), ms(settings_.t_to_o_rpi_us),
+      milliseconds(watchdog()));
 }
 
 // Why nothing that can be taken arrives.

@@ -40,6 +40,13 @@ TEST(RobotLog, TheLinkIsTalkedAboutWhenItChanges) {
   EXPECT_THAT(said(log, down, 4s), ElementsAre("arm1: link down: no reply"));
 }
 
+TEST(RobotLog, ALinkThatIsNotAsItWasAskedForComesUpWithARemark) {
+  RobotLog log("arm1");
+  CycleRecord up = good();
+  up.link_detail = "another interval";
+  EXPECT_THAT(said(log, up, 0s), ElementsAre("arm1: link up: another interval"));
+}
+
 TEST(RobotLog, ALinkThatFlapsIsCountedAndNotRepeated) {
   RobotLog log("arm1");
   CycleRecord down;

@@ -100,6 +100,17 @@ TEST(Producer, UsesTheIntervalThatTheRobotGrantsNotTheOneAsked) {
   EXPECT_EQ(rig.until([&] { return rig.machine.state() != State::kRunning; }, 1s), 16 * 7ms);
 }
 
+TEST(Consumer, SaysWhichIntervalTheRobotGrantsWhereItIsNotTheOneAsked) {
+  Rig rig;
+  rig.to_running({.t_to_o_api_us = 20'000});
+  rig.receive(1, 1);
+  EXPECT_EQ(
+      rig.machine.trouble(),
+      "the robot grants a packet interval of 10 ms O->T and 20 ms T->O, 10 and 10 ms were asked for; the watchdog is "
+      "320 ms; set rpi to what it grants if it stays so");
+  EXPECT_TRUE(rig.machine.running());
+}
+
 TEST(Producer, IsSilentWhileTheConnectionIsNotOpen) {
   Rig rig;
   EXPECT_FALSE(rig.produce());
