@@ -1,19 +1,50 @@
 #!/usr/bin/env bash
 # ./meca run: the bridge on the built-in robot, and what to type next. Arguments go to meca-bridge.
+# ./meca run ethernet_ip: the bridge and meca-sim as two programs that speak EtherNet/IP. Arguments go to meca-sim.
 . scripts/common.sh
 need build
-build release meca-bridge meca-ctl
-[ $# -gt 0 ] || set -- --config config/builtin.yaml
-cat <<'TEXT'
 
-The bridge runs in this terminal until Ctrl-C. In a second one:
+what_to_type() {
+  cat <<TEXT
+
+$1 in this terminal until Ctrl-C. In a second one:
 
   build/release/bin/meca-ctl status
   build/release/bin/meca-ctl activate
   build/release/bin/meca-ctl home
   build/release/bin/meca-ctl move-joints 30 20 -10 15 40 0 --wait
   build/release/bin/meca-ctl watch
-  build/release/bin/meca-ctl sim press p-stop2      its buttons; 'meca-ctl sim' lists them
+$2
 
 TEXT
-exec build/release/bin/meca-bridge "$@"
+}
+
+if [ "${1:-}" != ethernet_ip ]; then
+  build release meca-bridge meca-ctl
+  [ $# -gt 0 ] || set -- --config config/builtin.yaml
+  what_to_type "The bridge runs" \
+    "  build/release/bin/meca-ctl sim press p-stop2      its buttons; 'meca-ctl sim' lists them"
+  exec build/release/bin/meca-bridge "$@"
+fi
+
+shift
+build release meca-bridge meca-ctl meca-sim
+what_to_type "The bridge (127.0.0.1) and a simulated robot (127.0.0.2) run, with EtherNet/IP between them," \
+  "  build/release/bin/meca-ctl sim unplug             faults and buttons; 'meca-ctl sim' lists them
+  build/release/bin/meca-ctl sim plug
+  sudo tshark -i lo -f 'tcp port 44818 or udp port 2222'"
+
+sim='' bridge=''
+stop() { kill -TERM $bridge $sim 2>/dev/null || true; }
+trap stop EXIT INT TERM
+build/release/bin/meca-sim --bind 127.0.0.2 "$@" &
+sim=$!
+build/release/bin/meca-bridge --config config/ethernet_ip_demo.yaml &
+bridge=$!
+# Whoever ends first ends both. A signal interrupts the first wait; the bridge then has its time to say good-bye.
+wait -n || true
+stop
+status=0
+wait "$bridge" || status=$?
+wait "$sim" || status=$?
+exit "$status"
