@@ -44,8 +44,12 @@ bool eventually(const std::function<bool()>& condition) {
 // ---- meca-sim
 
 SimProgram::SimProgram(const std::string& address, const std::vector<std::string>& more)
-    : words_{program("meca-sim"), "--bind",    address,
-             "--instant-homing",  "--no-noise", "--control",
+    : words_{program("meca-sim"),
+             "--bind",
+             address,
+             "--instant-homing",
+             "--no-noise",
+             "--control",
              (directory_ / "sim.sock").string()} {
   words_.insert(words_.end(), more.begin(), more.end());
   start();
@@ -73,8 +77,9 @@ std::string SimProgram::say(const std::string& words) const {
 // The watchdog and the lease leave a busy machine its time.
 std::string robot(const std::string& name, const std::string& address, const std::string& more,
                   const std::string& cycle) {
-  return "  - {name: " + name + ", transport: {type: ethernet_ip, address: " + address + ", timeout_multiplier: " +
-         (cycle == "10ms" ? "256" : "64") + more + "}, cycle: " + cycle + ", control: {lease: 2s, velocity_lease: 1s}}\n";
+  return "  - {name: " + name + ", transport: {type: ethernet_ip, address: " + address +
+         ", timeout_multiplier: " + (cycle == "10ms" ? "256" : "64") + more + "}, cycle: " + cycle +
+         ", control: {lease: 2s, velocity_lease: 1s}}\n";
 }
 
 BridgeProgram::BridgeProgram(const std::vector<std::string>& robots, const std::string& bus) : prefix_(next_prefix()) {
@@ -92,8 +97,7 @@ void BridgeProgram::kill() {
 }
 
 void BridgeProgram::start() {
-  process_.emplace(
-      std::vector<std::string>{program("meca-bridge"), "--config", (directory_ / "bridge.yaml").string()});
+  process_.emplace(std::vector<std::string>{program("meca-bridge"), "--config", (directory_ / "bridge.yaml").string()});
 }
 
 int BridgeProgram::stop() {
@@ -120,9 +124,7 @@ nlohmann::json BridgeProgram::status(const std::string& robot) const {
 }
 
 bool BridgeProgram::until(const std::function<bool(const nlohmann::json&)>& condition, const std::string& robot) const {
-  return eventually([&] {
-    return condition(status(robot));
-  });
+  return eventually([&] { return condition(status(robot)); });
 }
 
 bool BridgeProgram::until_up(const std::string& robot) const {
@@ -138,7 +140,8 @@ bool BridgeProgram::until_told(const std::string& reason, const std::string& rob
   return until(
       [&](const auto& now) {
         const auto& bridge = now["bridge_status"];
-        return bridge["link"] != "LINK_UP" && bridge["link_detail"].template get<std::string>().find(reason) != std::string::npos;
+        return bridge["link"] != "LINK_UP" &&
+               bridge["link_detail"].template get<std::string>().find(reason) != std::string::npos;
       },
       robot);
 }

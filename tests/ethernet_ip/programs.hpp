@@ -1,4 +1,5 @@
-// A cell as its user starts it: meca-sim, meca-bridge and meca-ctl as programs, on addresses and topics of this test only.
+// A cell as its user starts it: meca-sim, meca-bridge and meca-ctl as programs, on addresses and topics of this test
+// only.
 #pragma once
 
 #include <functional>

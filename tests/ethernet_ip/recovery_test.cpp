@@ -1,5 +1,6 @@
-// What breaks between bridge and robot, by programs that are cut off, killed and started again: what is said of it, what
-// becomes of the command that was under way, that both come together again by themselves, and that nothing moves by itself.
+// What breaks between bridge and robot, by programs that are cut off, killed and started again: what is said of it,
+// what becomes of the command that was under way, that both come together again by themselves, and that nothing moves
+// by itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +67,8 @@ TEST_F(Recovery, OfACutCable) {
   const auto mover = under_way(bridge);
   ASSERT_EQ(arm1_.say("unplug"), "ok: the cable is out");
   EXPECT_EQ(mover->wait(), 1);
-  EXPECT_THAT(mover->output(), HasSubstr("arm1: move-joints: aborted (LINK_LOST): MoveJoints aborted: the link to the robot was lost"));
+  EXPECT_THAT(mover->output(),
+              HasSubstr("arm1: move-joints: aborted (LINK_LOST): MoveJoints aborted: the link to the robot was lost"));
   EXPECT_TRUE(bridge.until_told("from " + arm1_address()));
   EXPECT_THAT(bridge.ctl({"status"}).output, HasSubstr("no link to the robot"));
   EXPECT_EQ(bridge.ctl({"health"}).exit_code, 1);
@@ -74,7 +76,8 @@ TEST_F(Recovery, OfACutCable) {
   expect_that_only_a_command_moves(bridge);
   EXPECT_EQ(bridge.status()["bridge_status"]["transport_counters"]["watchdog_trips"], 1);
   EXPECT_EQ(bridge.stop(), 0);
-  EXPECT_THAT(bridge.log(), HasSubstr("arm1: link down: no packet from " + arm1_address() + " for 2560 ms (10 ms x 256)"));
+  EXPECT_THAT(bridge.log(),
+              HasSubstr("arm1: link down: no packet from " + arm1_address() + " for 2560 ms (10 ms x 256)"));
 }
 
 TEST_F(Recovery, OfAPowerCycleOfTheRobot) {
@@ -115,8 +118,9 @@ TEST_F(Recovery, OfAKilledBridge) {
   bridge.kill();
   bridge.start();
   EXPECT_EQ(mover->wait(), 4);
-  EXPECT_THAT(mover->output(), HasSubstr("move-joints: the bridge that took it is gone, or was started again; last it was "
-                                         "ACKNOWLEDGED, what became of it is not known"));
+  EXPECT_THAT(mover->output(),
+              HasSubstr("move-joints: the bridge that took it is gone, or was started again; last it was "
+                        "ACKNOWLEDGED, what became of it is not known"));
   expect_that_only_a_command_moves(bridge);
 }
 
@@ -171,10 +175,14 @@ TEST(TwoRobots, OfOneBridgeDoNotMissEachOther) {
   const json after = bridge.status("arm1")["bridge_status"];
   EXPECT_EQ(after["link_losses"], 0);
   EXPECT_GT(after["fresh_images"], before["fresh_images"]);
-  EXPECT_EQ(after["stale_cycles"], before["stale_cycles"]);
-  for (const char* counter : {"lost_packets", "stale_packets", "skipped_sends", "failed_sends", "watchdog_trips"}) {
+  // The machine may be late now and then; a robot that waited for the other would stand still for its watchdog, 64
+  // cycles.
+  EXPECT_LT(after["stale_cycles"].get<int>() - before["stale_cycles"].get<int>(), 16);
+  for (const char* counter : {"lost_packets", "stale_packets", "failed_sends", "watchdog_trips"}) {
     EXPECT_EQ(after["transport_counters"][counter], before["transport_counters"][counter]) << counter;
   }
+  const auto skipped = [](const json& bridge) { return bridge["transport_counters"]["skipped_sends"].get<int>(); };
+  EXPECT_LT(skipped(after) - skipped(before), 16);
   EXPECT_EQ(arm1.say("violations"), "ok: the host broke no rule");
 }
 

@@ -17,7 +17,8 @@ TEST(Sentence, OfAnotherDeviceSaysWhatWasFound) {
   other.identity.product_code = 65;
   const AdapterHost device(other);
   const BridgeProgram bridge({robot("arm1", arm1_address())});
-  EXPECT_TRUE(bridge.until_told("another device at " + arm1_address() + ": found vendor 1, type 43, product 65 "
+  EXPECT_TRUE(bridge.until_told("another device at " + arm1_address() +
+                                ": found vendor 1, type 43, product 65 "
                                 "'Meca500', expected vendor 1565, type 43, product 500 (Meca500); check the address"));
 }
 
