@@ -257,7 +257,9 @@ class Bench {
     const State state = machine_.state();
     require(machine_.group() == 0 || (settings_.multicast && machine_.group() >> 28 == 0xE), "a group that is none");
     require(machine_.group() == 0 || state == State::kRunning, "a group while not running");
-    require(!machine_.running() || machine_.trouble().empty(), "running, and in trouble");
+    const bool as_asked =
+        machine_.o_to_t_api_us() == settings_.o_to_t_rpi_us && machine_.t_to_o_api_us() == settings_.t_to_o_rpi_us;
+    require(!machine_.running() || machine_.trouble().empty() == as_asked, "running, and a wrong word about it");
     require(!was_closed || state == State::kClosed, "closed is for ever");
     const bool idle = state == State::kWaiting || state == State::kClosed;
     require(!idle || (!machine_.wants_tcp() && machine_.tcp_output().empty()), "TCP while there is nothing to say");
