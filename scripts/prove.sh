@@ -23,7 +23,11 @@ measured() {
 
 prove() {
   case $1 in
-    million) MECA_COMMANDS=${MECA_COMMANDS:-1000000} in_test test_control 'Million*' ;;
+    million)
+      export MECA_COMMANDS=${MECA_COMMANDS:-1000000}
+      in_test test_control 'Million*'
+      in_test test_buses '*executed*'
+      ;;
     faults) MECA_FAULT_SEQUENCES=${MECA_FAULT_SEQUENCES:-10000} in_test test_control '*FaultAndRecovery*' ;;
     stops) in_test test_stops '*' ;;
     deaths | fight | throughput) measured "$@" ;;
