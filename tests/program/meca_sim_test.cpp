@@ -261,7 +261,8 @@ std::string name_of(const testing::TestParamInfo<Fault>& info) {
 }
 
 bool has(const std::vector<std::byte>& bytes, std::initializer_list<int> wanted) {
-  return !std::ranges::search(bytes, wanted, {}, [](std::byte b) { return std::to_integer<int>(b); }).empty();
+  const auto same = [](std::byte b, int n) { return std::to_integer<int>(b) == n; };
+  return std::search(bytes.begin(), bytes.end(), wanted.begin(), wanted.end(), same) != bytes.end();
 }
 
 INSTANTIATE_TEST_SUITE_P(
