@@ -9,7 +9,8 @@ constexpr std::uint16_t kLengthMask = 0x07FF, kMore = 0x8000, kFrameType = 1;
 
 template <class Byte>
 std::uint16_t u16(std::span<Byte> bytes, std::size_t at) noexcept {
-  return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[at]) | std::to_integer<unsigned>(bytes[at + 1]) << 8);
+  return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[at]) | std::to_integer<unsigned>(bytes[at + 1])
+                                                                               << 8);
 }
 
 void put(std::span<std::byte> bytes, std::size_t at, std::uint16_t value) noexcept {

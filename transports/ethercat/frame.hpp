@@ -30,7 +30,21 @@ inline constexpr std::byte kReplyBit{0x02};
 // A: auto-increment (position), F: station address, B: broadcast, L: logical; RD, WR, RW; RMW: the addressed device
 // reads, all others write.
 enum class Command : std::uint8_t {
-  kNop, kAprd, kApwr, kAprw, kFprd, kFpwr, kFprw, kBrd, kBwr, kBrw, kLrd, kLwr, kLrw, kArmw, kFrmw
+  kNop,
+  kAprd,
+  kApwr,
+  kAprw,
+  kFprd,
+  kFpwr,
+  kFprw,
+  kBrd,
+  kBwr,
+  kBrw,
+  kLrd,
+  kLwr,
+  kLrw,
+  kArmw,
+  kFrmw
 };
 inline constexpr std::uint8_t kCommands = 15;
 
@@ -59,9 +73,7 @@ class BasicDatagram {
   bool circulating() const noexcept { return (u16(6) & 0x4000) != 0; }
   bool more() const noexcept { return (u16(6) & 0x8000) != 0; }
   std::uint16_t irq() const noexcept { return u16(8); }
-  std::span<Byte> data() const noexcept {
-    return whole_.subspan(kDatagramHeader, whole_.size() - kDatagramOverhead);
-  }
+  std::span<Byte> data() const noexcept { return whole_.subspan(kDatagramHeader, whole_.size() - kDatagramOverhead); }
   std::uint16_t working_counter() const noexcept { return u16(whole_.size() - kWorkingCounter); }
 
   void set_adp(std::uint16_t adp) noexcept requires(!std::is_const_v<Byte>) { put(2, adp); }

@@ -13,7 +13,8 @@ class Histogram {
  public:
   using Time = std::chrono::nanoseconds;
 
-  struct Facts {  // microseconds, upper bound of the bucket (6 % wide) for the percentiles; 0 while nothing was measured
+  struct Facts {  // microseconds, upper bound of the bucket (6 % wide) for the percentiles; 0 while nothing was
+                  // measured
     std::int64_t p50 = 0, p99 = 0, p999 = 0, max = 0;
   };
 

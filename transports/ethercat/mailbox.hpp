@@ -38,13 +38,25 @@ constexpr std::uint8_t next_mailbox_counter(std::uint8_t counter) noexcept {  //
 
 // Mailbox error reply (type 0): 1, then one of these.
 enum class MailboxError : std::uint16_t {
-  kSyntax = 1, kUnsupportedProtocol = 2, kInvalidChannel = 3, kServiceNotSupported = 4, kInvalidHeader = 5,
-  kSizeTooShort = 6, kNoMoreMemory = 7, kInvalidSize = 8
+  kSyntax = 1,
+  kUnsupportedProtocol = 2,
+  kInvalidChannel = 3,
+  kServiceNotSupported = 4,
+  kInvalidHeader = 5,
+  kSizeTooShort = 6,
+  kNoMoreMemory = 7,
+  kInvalidSize = 8
 };
 std::optional<std::uint16_t> parse_mailbox_error(Bytes payload) noexcept;
 
 enum class CoeService : std::uint8_t {
-  kEmergency = 1, kSdoRequest = 2, kSdoResponse = 3, kTxPdo = 4, kRxPdo = 5, kTxPdoRemote = 6, kRxPdoRemote = 7,
+  kEmergency = 1,
+  kSdoRequest = 2,
+  kSdoResponse = 3,
+  kTxPdo = 4,
+  kRxPdo = 5,
+  kTxPdoRemote = 6,
+  kRxPdoRemote = 7,
   kSdoInformation = 8
 };
 struct CoeHeader {
@@ -56,11 +68,26 @@ void write(wire::Writer& out, const CoeHeader& header) noexcept;
 
 // ---- SDO. What stands after the CoE header.
 enum class SdoAbort : std::uint32_t {
-  kToggle = 0x05030000, kTimeout = 0x05040000, kCommand = 0x05040001, kMemory = 0x05040005,
-  kUnsupportedAccess = 0x06010000, kWriteOnly = 0x06010001, kReadOnly = 0x06010002, kSubindex0NotZero = 0x06010003,
-  kNoCompleteAccess = 0x06010004, kNoObject = 0x06020000, kNotMappable = 0x06040041, kMappingTooLong = 0x06040042,
-  kIncompatible = 0x06040043, kLength = 0x06070010, kTooLong = 0x06070012, kTooShort = 0x06070013,
-  kNoSubindex = 0x06090011, kValueRange = 0x06090030, kGeneral = 0x08000000, kState = 0x08000022
+  kToggle = 0x05030000,
+  kTimeout = 0x05040000,
+  kCommand = 0x05040001,
+  kMemory = 0x05040005,
+  kUnsupportedAccess = 0x06010000,
+  kWriteOnly = 0x06010001,
+  kReadOnly = 0x06010002,
+  kSubindex0NotZero = 0x06010003,
+  kNoCompleteAccess = 0x06010004,
+  kNoObject = 0x06020000,
+  kNotMappable = 0x06040041,
+  kMappingTooLong = 0x06040042,
+  kIncompatible = 0x06040043,
+  kLength = 0x06070010,
+  kTooLong = 0x06070012,
+  kTooShort = 0x06070013,
+  kNoSubindex = 0x06090011,
+  kValueRange = 0x06090030,
+  kGeneral = 0x08000000,
+  kState = 0x08000022
 };
 
 struct SdoAddress {
@@ -72,16 +99,16 @@ struct SdoAddress {
 // One SDO message of either direction, whatever it is; which fields mean something depends on `kind`.
 struct SdoMessage {
   enum class Kind : std::uint8_t {
-    kUploadRequest,           // address, complete_access
-    kUploadResponse,          // address, complete_access, size, data: all of it (expedited), or the first part
-    kDownloadRequest,         // the same
-    kDownloadResponse,        // address
-    kUploadSegmentRequest,    // toggle
-    kUploadSegmentResponse,   // toggle, last, data
-    kDownloadSegmentRequest,  // toggle, last, data
-    kDownloadSegmentResponse, // toggle
-    kAbort,                   // address, abort
-    kUnknown,                 // a command specifier of no service
+    kUploadRequest,            // address, complete_access
+    kUploadResponse,           // address, complete_access, size, data: all of it (expedited), or the first part
+    kDownloadRequest,          // the same
+    kDownloadResponse,         // address, complete_access
+    kUploadSegmentRequest,     // toggle
+    kUploadSegmentResponse,    // toggle, last, data
+    kDownloadSegmentRequest,   // toggle, last, data
+    kDownloadSegmentResponse,  // toggle
+    kAbort,                    // address, abort
+    kUnknown,                  // a command specifier of no service
   };
   Kind kind = Kind::kUnknown;
   SdoAddress address;
@@ -93,8 +120,8 @@ struct SdoMessage {
 // `service`: request or response, which says how the command specifier is to be read; aborts come as either. An abort
 // is whatever has the specifier 4, other bits may be set. Empty when bytes are missing.
 std::optional<SdoMessage> parse_sdo(CoeService service, Bytes bytes) noexcept;
-// Writes the message after its CoE header. Expedited where `expedited` is set (at most 4 bytes of data). Segments of
-// fewer than 7 bytes are filled up to 7.
+// Writes the message after its CoE header; what is kUnknown is not written. Expedited where `expedited` is set and
+// there are 1 to 4 bytes of data. Segments of fewer than 7 bytes are filled up to 7.
 void write(wire::Writer& out, const SdoMessage& message) noexcept;
 
 // ---- Emergencies
@@ -108,7 +135,12 @@ void write(wire::Writer& out, const Emergency& emergency) noexcept;
 
 // ---- SDO information
 enum class SdoInformation : std::uint8_t {
-  kListRequest = 1, kListResponse = 2, kObjectRequest = 3, kObjectResponse = 4, kEntryRequest = 5, kEntryResponse = 6,
+  kListRequest = 1,
+  kListResponse = 2,
+  kObjectRequest = 3,
+  kObjectResponse = 4,
+  kEntryRequest = 5,
+  kEntryResponse = 6,
   kError = 7
 };
 struct SdoInformationHeader {

@@ -23,8 +23,8 @@ struct Pdo {
   std::uint32_t bits() const noexcept;
 };
 
-// In the order of the image. 9 RxPDOs (480 bits); TxPDOs (2016 bits): 12 on firmware 9, 13 from 10 on. On firmware 9 the
-// 12 bytes of the later safety section are a gap at the end of 1A10h (as the ESI 9.3.3 has it; see the .cpp).
+// In the order of the image. 9 RxPDOs (480 bits); TxPDOs (2016 bits): 12 on firmware 9, 13 from 10 on. On firmware 9
+// the 12 bytes of the later safety section are a gap at the end of 1A10h (as the ESI 9.3.3 has it; see the .cpp).
 std::vector<Pdo> rx_pdos(image::Layout layout);
 std::vector<Pdo> tx_pdos(image::Layout layout);
 

@@ -63,9 +63,14 @@ inline constexpr std::array<SyncManagerLayout, 4> kSyncManagers{{
 }};
 constexpr std::array<std::byte, reg::kSyncManagerSize> sync_manager_bytes(unsigned n, bool enable) noexcept {
   const SyncManagerLayout& sm = kSyncManagers[n];
-  return {static_cast<std::byte>(sm.start & 0xFF), static_cast<std::byte>(sm.start >> 8),
-          static_cast<std::byte>(sm.length & 0xFF), static_cast<std::byte>(sm.length >> 8),
-          static_cast<std::byte>(sm.control), std::byte{0}, std::byte{enable}, std::byte{0}};
+  return {static_cast<std::byte>(sm.start & 0xFF),
+          static_cast<std::byte>(sm.start >> 8),
+          static_cast<std::byte>(sm.length & 0xFF),
+          static_cast<std::byte>(sm.length >> 8),
+          static_cast<std::byte>(sm.control),
+          std::byte{0},
+          std::byte{enable},
+          std::byte{0}};
 }
 
 // Whole bytes of the logical address space onto the start of sync manager 2 (outputs, written) or 3 (inputs, read).

@@ -18,7 +18,14 @@ inline constexpr std::uint16_t kAlias = 0x04, kChecksum = 0x07, kVendor = 0x08, 
                                kSerial = 0x0E, kMailbox = 0x18, kProtocols = 0x1C, kSize = 0x3E, kCategories = 0x40;
 inline constexpr std::uint16_t kCoe = 0x0004;  // of the protocols
 enum class Category : std::uint16_t {
-  kStrings = 10, kGeneral = 30, kFmmu = 40, kSyncManager = 41, kTxPdo = 50, kRxPdo = 51, kDc = 60, kEnd = 0xFFFF
+  kStrings = 10,
+  kGeneral = 30,
+  kFmmu = 40,
+  kSyncManager = 41,
+  kTxPdo = 50,
+  kRxPdo = 51,
+  kDc = 60,
+  kEnd = 0xFFFF
 };
 }  // namespace sii
 
