@@ -31,8 +31,9 @@ constexpr Text<std::uint16_t> kAlCodes[] = {
     {0x0017, "invalid sync manager configuration"},
     {0x0018, "no valid inputs available"},
     {0x0019, "no valid outputs: none were received yet"},
-    {0x001A, "synchronization error: process data and SYNC0 lost each other; the master stopped, or its cycle does not "
-             "follow the reference clock"},
+    {0x001A,
+     "synchronization error: process data and SYNC0 lost each other; the master stopped, or its cycle does not "
+     "follow the reference clock"},
     {0x001B, "sync manager watchdog: no outputs arrived in time; the master stopped, is late, or the cable was pulled"},
     {0x001C, "invalid sync manager types"},
     {0x001D, "invalid output configuration: sync manager 2 does not have the length of the PDO assignment"},
@@ -51,8 +52,9 @@ constexpr Text<std::uint16_t> kAlCodes[] = {
     {0x002A, "watchdog of the device's own application"},
     {0x002B, "no valid inputs and outputs"},
     {0x002C, "fatal synchronization error: SYNC0 is not received any more"},
-    {0x002D, "no synchronization: SYNC0 was not received at all; the distributed clocks are not set up, or process data "
-             "started too late"},
+    {0x002D,
+     "no synchronization: SYNC0 was not received at all; the distributed clocks are not set up, or process data "
+     "started too late"},
     {0x002E, "cycle time too small, or invalid input FMMU: devices differ"},
     {0x0030, "invalid DC SYNC configuration: SYNC0 is not switched on as the synchronization needs it"},
     {0x0031, "invalid DC latch configuration"},

@@ -111,10 +111,10 @@ struct SdoMessage {
     kUnknown,                  // a command specifier of no service
   };
   Kind kind = Kind::kUnknown;
-  SdoAddress address;
+  SdoAddress address{};
   bool complete_access = false, expedited = false, toggle = false, last = false;
   std::uint32_t size = 0;  // of the whole value
-  Bytes data;
+  Bytes data{};
   std::uint32_t abort = 0;
 };
 // `service`: request or response, which says how the command specifier is to be read; aborts come as either. An abort

@@ -8,7 +8,8 @@ namespace {
 
 using image::Layout;
 
-// The PDOs of the ESI in the order of the image. Each begins where its first object lies and ends where the next begins.
+// The PDOs of the ESI in the order of the image. Each begins where its first object lies and ends where the next
+// begins.
 struct Start {
   std::uint16_t pdo, object;
 };
@@ -54,7 +55,8 @@ struct Piece {
   image::CoeObject object;  // {0, 0}: a gap
 };
 
-// Fields and reserved bits of a layout in the order of the image. A bit that only other robots have is a gap of its own.
+// Fields and reserved bits of a layout in the order of the image. A bit that only other robots have is a gap of its
+// own.
 std::vector<Piece> pieces_of(const auto& fields, const auto& reserved, Layout layout) {
   std::vector<Piece> pieces;
   for (const auto& field : fields) {

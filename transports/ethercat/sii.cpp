@@ -23,10 +23,10 @@ void begin_category(wire::Writer& out, sii::Category category, std::uint16_t wor
 void write_general(wire::Writer& out) noexcept {
   begin_category(out, sii::Category::kGeneral, 16);
   out.zeros(5);
-  out.u8(0x27);    // CoE: SDO, SDO information, PDO assignment, complete access
-  out.zeros(5);    // no FoE, no EoE, nothing of the vendor
-  out.u8(0x04);    // the mailbox repeats on request (DataLinkLayer)
-  out.zeros(4);    // no E-bus current
+  out.u8(0x27);     // CoE: SDO, SDO information, PDO assignment, complete access
+  out.zeros(5);     // no FoE, no EoE, nothing of the vendor
+  out.u8(0x04);     // the mailbox repeats on request (DataLinkLayer)
+  out.zeros(4);     // no E-bus current
   out.u16(0x0011);  // ports 0 and 1 are MII
   out.zeros(14);
 }
@@ -44,7 +44,7 @@ void write_sync_managers(wire::Writer& out) noexcept {
     out.u16(kLengths[n]);
     out.u8(kSyncManagers[n].control);
     out.u8(0);
-    out.u8(1);                                  // enabled
+    out.u8(1);                                 // enabled
     out.u8(static_cast<std::uint8_t>(n + 1));  // mailbox out, mailbox in, outputs, inputs
   }
 }
