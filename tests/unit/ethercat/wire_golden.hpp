@@ -86,48 +86,38 @@ inline constexpr std::string_view kWrongLengthReply =
 // ---- Mails: header and what it promises, out of 128 bytes of mailbox memory
 
 // soem2, frame 259: upload of 1018:01.
-inline constexpr std::string_view kUploadVendorRequest =
-    "0A 00 00 00 00 13 00 20 40 18 10 01 00 00 00 00";
+inline constexpr std::string_view kUploadVendorRequest = "0A 00 00 00 00 13 00 20 40 18 10 01 00 00 00 00";
 
 // soem2, frame 272: 4 bytes, expedited.
-inline constexpr std::string_view kUploadVendorResponse =
-    "0A 00 00 00 00 13 00 30 43 18 10 01 E1 AD EC 00";
+inline constexpr std::string_view kUploadVendorResponse = "0A 00 00 00 00 13 00 30 43 18 10 01 E1 AD EC 00";
 
 // soem2, frame 288: 1008:00, 7 bytes, not expedited.
 inline constexpr std::string_view kUploadNameResponse =
     "11 00 00 00 00 23 00 30 41 08 10 00 07 00 00 00 4D 65 63 61 35 30 30";
 
 // soem2, frame 306: 1C12:00, 1 byte, expedited; SOES leaves old bytes behind it.
-inline constexpr std::string_view kUploadCountResponse =
-    "0A 00 00 00 00 33 00 30 4F 12 1C 00 09 AD EC 00";
+inline constexpr std::string_view kUploadCountResponse = "0A 00 00 00 00 33 00 30 4F 12 1C 00 09 AD EC 00";
 
 // kickcat, frame 756: 1C12:01, 2 bytes, expedited.
-inline constexpr std::string_view kUploadEntryResponse =
-    "0A 00 00 00 00 33 00 30 4B 12 1C 01 00 16 00 00";
+inline constexpr std::string_view kUploadEntryResponse = "0A 00 00 00 00 33 00 30 4B 12 1C 01 00 16 00 00";
 
 // soem2, frame 344: abort as a response.
-inline constexpr std::string_view kNoObject =
-    "0A 00 00 00 00 53 00 20 80 FF 5F 00 00 00 02 06";
+inline constexpr std::string_view kNoObject = "0A 00 00 00 00 53 00 20 80 FF 5F 00 00 00 02 06";
 
 // soem2, frame 360: abort as a request, which the standard has.
-inline constexpr std::string_view kNoSubindex =
-    "0A 00 00 00 00 63 00 20 80 18 10 09 11 00 09 06";
+inline constexpr std::string_view kNoSubindex = "0A 00 00 00 00 63 00 20 80 18 10 09 11 00 09 06";
 
 // soem2, frame 363: 10F1:02 = 7, 2 bytes, expedited.
-inline constexpr std::string_view kDownloadRequest =
-    "0A 00 00 00 00 73 00 20 2B F1 10 02 07 00 00 00";
+inline constexpr std::string_view kDownloadRequest = "0A 00 00 00 00 73 00 20 2B F1 10 02 07 00 00 00";
 
 // soem2, frame 380: done.
-inline constexpr std::string_view kDownloadResponse =
-    "0A 00 00 00 00 73 00 30 60 F1 10 02 00 00 00 00";
+inline constexpr std::string_view kDownloadResponse = "0A 00 00 00 00 73 00 30 60 F1 10 02 00 00 00 00";
 
 // soem2, frame 398: abort of a download.
-inline constexpr std::string_view kReadOnly =
-    "0A 00 00 00 00 13 00 20 80 18 10 01 02 00 01 06";
+inline constexpr std::string_view kReadOnly = "0A 00 00 00 00 13 00 20 80 18 10 01 02 00 01 06";
 
 // soem2, frame 401: upload of the whole 1C12.
-inline constexpr std::string_view kCompleteRequest =
-    "0A 00 00 00 00 23 00 20 50 12 1C 00 00 00 00 00";
+inline constexpr std::string_view kCompleteRequest = "0A 00 00 00 00 23 00 20 50 12 1C 00 00 00 00 00";
 
 // soem2, frame 416: 20 bytes.
 inline constexpr std::string_view kCompleteResponse =
@@ -142,8 +132,7 @@ inline constexpr std::string_view kLongUpload =
     "50 51 52 53 54 55 56 57 58 59 5A 5B 5C 5D 5E 5F 60 61 62 63 64 65 66 67 68 69 6A 6B 6C 6D 6E 6F";
 
 // soem2, frame 433: the next, toggle 0.
-inline constexpr std::string_view kLongUploadSegmentRequest =
-    "0A 00 00 00 00 43 00 20 60 00 2F 00 00 00 00 00";
+inline constexpr std::string_view kLongUploadSegmentRequest = "0A 00 00 00 00 43 00 20 60 00 2F 00 00 00 00 00";
 
 // soem2, frame 448: 119 bytes.
 inline constexpr std::string_view kLongUploadSegment =
@@ -153,8 +142,7 @@ inline constexpr std::string_view kLongUploadSegment =
     "C7 C8 C9 CA CB CC CD CE CF D0 D1 D2 D3 D4 D5 D6 D7 D8 D9 DA DB DC DD DE DF E0 E1 E2 E3 E4 E5 E6";
 
 // soem2, frame 449: the next, toggle 1.
-inline constexpr std::string_view kLongUploadSegmentRequest1 =
-    "0A 00 00 00 00 53 00 20 70 00 2F 00 00 00 00 00";
+inline constexpr std::string_view kLongUploadSegmentRequest1 = "0A 00 00 00 00 53 00 20 70 00 2F 00 00 00 00 00";
 
 // soem2, frame 498: 43 bytes, the last.
 inline constexpr std::string_view kLongUploadLast =
@@ -169,8 +157,7 @@ inline constexpr std::string_view kLongDownload =
     "F0 F3 F6 F9 FC FF 02 05 08 0B 0E 11 14 17 1A 1D 20 23 26 29 2C 2F 32 35 38 3B 3E 41 44 47 4A 4D";
 
 // kickcat, frame 503: the same, no data in the first mail.
-inline constexpr std::string_view kLongDownloadWithoutData =
-    "0A 00 00 00 00 73 00 20 21 00 2F 00 00 02 00 00";
+inline constexpr std::string_view kLongDownloadWithoutData = "0A 00 00 00 00 73 00 20 21 00 2F 00 00 02 00 00";
 
 // soem2, frame 517: 119 bytes.
 inline constexpr std::string_view kLongDownloadSegment =
@@ -180,12 +167,10 @@ inline constexpr std::string_view kLongDownloadSegment =
     "55 58 5B 5E 61 64 67 6A 6D 70 73 76 79 7C 7F 82 85 88 8B 8E 91 94 97 9A 9D A0 A3 A6 A9 AC AF B2";
 
 // soem2, frame 530: toggle 0; SOES leaves old bytes behind it.
-inline constexpr std::string_view kLongDownloadSegmentResponse =
-    "0A 00 00 00 00 23 00 30 20 00 00 00 D8 D9 DA DB";
+inline constexpr std::string_view kLongDownloadSegmentResponse = "0A 00 00 00 00 23 00 30 20 00 00 00 D8 D9 DA DB";
 
 // soem2, frame 546: toggle 1.
-inline constexpr std::string_view kLongDownloadSegmentResponse1 =
-    "0A 00 00 00 00 33 00 30 30 00 00 00 00 00 00 00";
+inline constexpr std::string_view kLongDownloadSegmentResponse1 = "0A 00 00 00 00 33 00 30 30 00 00 00 00 00 00 00";
 
 // soem2, frame 563: 43 bytes, the last.
 inline constexpr std::string_view kLongDownloadLast =
@@ -200,10 +185,36 @@ inline constexpr std::string_view kSafetyMapping =
     "00 00 01 13 65 60 01 00 00 00 01 00 00 00 01 16 65 60 01 00 00 00 14 00 00 00 08 00 00 00 01 18";
 
 // soem2, frame 1042: the other 10.
-inline constexpr std::string_view kSafetyMappingLast =
-    "0D 00 00 00 00 43 00 30 01 65 60 01 19 65 60 16 00 00 00";
+inline constexpr std::string_view kSafetyMappingLast = "0D 00 00 00 00 43 00 30 01 65 60 01 19 65 60 16 00 00 00";
 
-inline constexpr std::string_view kFrames[] = {kAcknowledgeAndInit, kAcknowledgeAndInitReply, kMailboxStatusReply, kSyncManagersAndFmmus, kSyncManagersAndFmmusReply, kProcessDataReply, kThreeDevicesReply, kClockReply, kWrongLengthReply};
-inline constexpr std::string_view kMails[] = {kUploadVendorRequest, kUploadVendorResponse, kUploadNameResponse, kUploadCountResponse, kUploadEntryResponse, kNoObject, kNoSubindex, kDownloadRequest, kDownloadResponse, kReadOnly, kCompleteRequest, kCompleteResponse, kLongUpload, kLongUploadSegmentRequest, kLongUploadSegment, kLongUploadSegmentRequest1, kLongUploadLast, kLongDownload, kLongDownloadWithoutData, kLongDownloadSegment, kLongDownloadSegmentResponse, kLongDownloadSegmentResponse1, kLongDownloadLast, kSafetyMapping, kSafetyMappingLast};
+inline constexpr std::string_view kFrames[] = {
+    kAcknowledgeAndInit,        kAcknowledgeAndInitReply, kMailboxStatusReply, kSyncManagersAndFmmus,
+    kSyncManagersAndFmmusReply, kProcessDataReply,        kThreeDevicesReply,  kClockReply,
+    kWrongLengthReply};
+inline constexpr std::string_view kMails[] = {kUploadVendorRequest,
+                                              kUploadVendorResponse,
+                                              kUploadNameResponse,
+                                              kUploadCountResponse,
+                                              kUploadEntryResponse,
+                                              kNoObject,
+                                              kNoSubindex,
+                                              kDownloadRequest,
+                                              kDownloadResponse,
+                                              kReadOnly,
+                                              kCompleteRequest,
+                                              kCompleteResponse,
+                                              kLongUpload,
+                                              kLongUploadSegmentRequest,
+                                              kLongUploadSegment,
+                                              kLongUploadSegmentRequest1,
+                                              kLongUploadLast,
+                                              kLongDownload,
+                                              kLongDownloadWithoutData,
+                                              kLongDownloadSegment,
+                                              kLongDownloadSegmentResponse,
+                                              kLongDownloadSegmentResponse1,
+                                              kLongDownloadLast,
+                                              kSafetyMapping,
+                                              kSafetyMappingLast};
 
 }  // namespace meca::ethercat::golden

@@ -35,7 +35,9 @@ std::string number(unsigned value, int digits) {
   return out.data();
 }
 
-std::string address(const SdoMessage& sdo) { return " " + number(sdo.address.index, 4) + ":" + number(sdo.address.sub, 2); }
+std::string address(const SdoMessage& sdo) {
+  return " " + number(sdo.address.index, 4) + ":" + number(sdo.address.sub, 2);
+}
 
 std::string value(const SdoMessage& sdo) {
   const bool all = sdo.data.size() == sdo.size;
@@ -49,7 +51,8 @@ std::string segment(const SdoMessage& sdo) {
 }
 
 std::string text(const SdoMessage& sdo) {
-  const std::string complete = sdo.complete_access ? ", complete" : "", toggle = sdo.toggle ? ", toggle 1" : ", toggle 0";
+  const std::string complete = sdo.complete_access ? ", complete" : "",
+                    toggle = sdo.toggle ? ", toggle 1" : ", toggle 0";
   switch (sdo.kind) {
     case Kind::kUploadRequest:
       return "upload" + address(sdo) + complete;
@@ -263,8 +266,9 @@ TEST(EtherCatSdo, MessagesAreWrittenAsTheOtherStacksWriteThem) {
   EXPECT_EQ(written({.kind = Kind::kUploadRequest, .address = {0x1018, 1}}), "40 18 10 01 00 00 00 00");
   EXPECT_EQ(written({.kind = Kind::kUploadRequest, .address = {0x1C12, 0}, .complete_access = true}),
             "50 12 1C 00 00 00 00 00");
-  EXPECT_EQ(written({.kind = Kind::kDownloadRequest, .address = {0x10F1, 2}, .expedited = true, .size = 2, .data = bytes}),
-            "2B F1 10 02 07 00 00 00");
+  EXPECT_EQ(
+      written({.kind = Kind::kDownloadRequest, .address = {0x10F1, 2}, .expedited = true, .size = 2, .data = bytes}),
+      "2B F1 10 02 07 00 00 00");
   EXPECT_EQ(written({.kind = Kind::kDownloadRequest, .address = {0x10F1, 2}, .size = 2, .data = bytes}),
             "21 F1 10 02 02 00 00 00 07 00");
   EXPECT_EQ(written({.kind = Kind::kDownloadResponse, .address = {0x10F1, 2}}), "60 F1 10 02 00 00 00 00");

@@ -4,18 +4,18 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <map>
 #include <sstream>
 #include <vector>
 
+#include "tests/unit/image/esi.hpp"
 #include "tests/unit/image/support.hpp"
 #include "transports/image/field_table.hpp"
 
 namespace meca::image {
 namespace {
 
-using test::contents;
+using test::contents, test::element, test::elements, test::number_of;
 
 constexpr std::string_view kWireNames[] = {"BOOL", "UINT", "UDINT", "REAL", "SINT", "USINT"};  // ESI spelling
 
@@ -27,32 +27,6 @@ struct EsiEntry {
   CoeObject coe;  // {0, 0}: a gap
   std::string type;
 };
-
-unsigned number_of(std::string text) {
-  const bool hex = text.starts_with("#x");
-  unsigned value = 0;
-  const auto* begin = text.data() + (hex ? 2 : 0);
-  const auto result = std::from_chars(begin, text.data() + text.size(), value, hex ? 16 : 10);
-  EXPECT_EQ(result.ec, std::errc{}) << "no number in the ESI: " << text;
-  return value;
-}
-
-// The texts between <tag ...> and </tag>; enough of XML for an ESI, where these tags do not nest in themselves.
-std::vector<std::string> elements(const std::string& xml, const std::string& tag) {
-  std::vector<std::string> found;
-  for (auto at = xml.find("<" + tag); at != std::string::npos; at = xml.find("<" + tag, at + 1)) {
-    const char after = xml[at + 1 + tag.size()];
-    if (after != '>' && after != ' ') continue;
-    const auto begin = xml.find('>', at) + 1;
-    found.push_back(xml.substr(begin, xml.find("</" + tag + ">", begin) - begin));
-  }
-  return found;
-}
-
-std::string element(const std::string& xml, const std::string& tag) {
-  const auto found = elements(xml, tag);
-  return found.empty() ? "" : found.front();
-}
 
 // The entries of all PDOs of a direction ("RxPdo", "TxPdo"), or of the one named, in the order of the image.
 std::vector<EsiEntry> esi_entries(const std::string& xml, const std::string& direction, const std::string& only = "") {
