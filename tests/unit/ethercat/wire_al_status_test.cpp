@@ -31,10 +31,10 @@ TEST(AlStatus, CodesThatMastersCauseSayWhatIsWrong) {
 }
 
 TEST(AlStatus, EveryCodeThatARobotOrAMasterIsKnownToShowHasAText) {
-  constexpr std::uint16_t kCodes[] = {0x11, 0x12, 0x13, 0x16, 0x17, 0x18, 0x19, 0x1A, 0x1B, 0x1C, 0x1D, 0x1E, 0x1F, 0x20,
-                                   0x21, 0x22, 0x23, 0x24, 0x25, 0x26, 0x27, 0x28, 0x29, 0x2A, 0x2B, 0x2C, 0x2D, 0x2E,
-                                   0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x37, 0x41, 0x42, 0x43, 0x44, 0x45, 0x4F,
-                                   0x50, 0x51, 0x60, 0x61};
+  constexpr std::uint16_t kCodes[] = {0x11, 0x12, 0x13, 0x16, 0x17, 0x18, 0x19, 0x1A, 0x1B, 0x1C, 0x1D, 0x1E,
+                                      0x1F, 0x20, 0x21, 0x22, 0x23, 0x24, 0x25, 0x26, 0x27, 0x28, 0x29, 0x2A,
+                                      0x2B, 0x2C, 0x2D, 0x2E, 0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x37,
+                                      0x41, 0x42, 0x43, 0x44, 0x45, 0x4F, 0x50, 0x51, 0x60, 0x61};
   for (const std::uint16_t code : kCodes) {
     EXPECT_NE(al_code_text(code), "not known") << std::hex << code;
   }
@@ -43,9 +43,9 @@ TEST(AlStatus, EveryCodeThatARobotOrAMasterIsKnownToShowHasAText) {
 TEST(SdoAborts, EveryCodeThatWeSendHasAText) {
   using enum SdoAbort;
   for (const SdoAbort code :
-       {kToggle, kTimeout, kCommand, kMemory, kUnsupportedAccess, kWriteOnly, kReadOnly, kSubindex0NotZero,
-        kNoCompleteAccess, kNoObject, kNotMappable, kMappingTooLong, kIncompatible, kLength, kTooLong, kTooShort,
-        kNoSubindex, kValueRange, kGeneral, kState}) {
+       {kToggle,           kTimeout,          kCommand,    kMemory,      kUnsupportedAccess, kWriteOnly,    kReadOnly,
+        kSubindex0NotZero, kNoCompleteAccess, kNoObject,   kNotMappable, kMappingTooLong,    kIncompatible, kLength,
+        kTooLong,          kTooShort,         kNoSubindex, kValueRange,  kGeneral,           kState}) {
     EXPECT_NE(abort_text(static_cast<std::uint32_t>(code)), "not known") << std::hex << static_cast<unsigned>(code);
   }
   EXPECT_EQ(abort_text(0x06020000), "object does not exist");

@@ -48,8 +48,7 @@ TEST(PdoObjects, TileOutputsAndInputsOfEveryFirmware) {
 }
 
 TEST(PdoObjects, AreAssignedInTheOrderOfTheImage) {
-  EXPECT_THAT(rx_assignment(),
-              ElementsAre(0x1600, 0x1601, 0x1602, 0x1610, 0x1611, 0x1620, 0x1621, 0x1622, 0x1623));
+  EXPECT_THAT(rx_assignment(), ElementsAre(0x1600, 0x1601, 0x1602, 0x1610, 0x1611, 0x1620, 0x1621, 0x1622, 0x1623));
   EXPECT_THAT(tx_assignment(true), ElementsAre(0x1A00, 0x1A01, 0x1A02, 0x1A03, 0x1A08, 0x1A09, 0x1A0A, 0x1A10, 0x1A11,
                                                0x1A20, 0x1A21, 0x1A22, 0x1A23));
   EXPECT_THAT(tx_assignment(false), ElementsAre(0x1A00, 0x1A01, 0x1A02, 0x1A03, 0x1A08, 0x1A09, 0x1A0A, 0x1A10, 0x1A20,
@@ -64,8 +63,8 @@ TEST(PdoObjects, MapBitsNumbersAndGaps) {
   const auto outputs = rx_pdos(Layout::kFirmware10);
   EXPECT_THAT(find(outputs, 0x1600).entries, ElementsAre(0x72000101, 0x72000201, 0x72000301, 0x72000401, 0x72000501,
                                                          0x72000601, 0x72000701, 0x00000019));
-  EXPECT_THAT(find(outputs, 0x1602).entries, ElementsAre(0x73050020, 0x73060120, 0x73060220, 0x73060320, 0x73060420,
-                                                         0x73060520, 0x73060620));
+  EXPECT_THAT(find(outputs, 0x1602).entries,
+              ElementsAre(0x73050020, 0x73060120, 0x73060220, 0x73060320, 0x73060420, 0x73060520, 0x73060620));
   EXPECT_THAT(find(outputs, 0x1623).entries, ElementsAre(0x74230120));
   EXPECT_THAT(find(tx_pdos(Layout::kFirmware10), 0x1A00).entries,
               ElementsAre(0x60100201, 0x60100301, 0x60100401, 0x60100501, 0x60100601, 0x60100701, 0x60100801,
