@@ -57,7 +57,8 @@ void check_frame(Bytes frame) {
     const auto data = datagram->data();
     const auto room = writer.room();
     const auto copy = writer.add(datagram->command(), datagram->index(), datagram->address(), data.size());
-    require(copy.empty() == (data.empty() || data.size() > room), "a datagram fits where there is no room, or does not");
+    require(copy.empty() == (data.empty() || data.size() > room),
+            "a datagram fits where there is no room, or does not");
     std::copy_n(data.begin(), copy.size(), copy.begin());
     fits = fits && !copy.empty();
   }
@@ -123,7 +124,8 @@ void check_coe(Bytes payload) {
 void check_mail(Bytes memory) {
   const auto mail = parse_mail(memory);
   if (!mail) return;
-  require(inside(mail->payload, memory) && mail->payload.size() == mail->header.length, "a payload outside of its mail");
+  require(inside(mail->payload, memory) && mail->payload.size() == mail->header.length,
+          "a payload outside of its mail");
   const auto again = written(kMailboxHeader + mail->payload.size(), [&](auto& out) {
     write(out, mail->header);
     out.bytes(mail->payload);

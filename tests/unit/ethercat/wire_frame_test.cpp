@@ -107,7 +107,9 @@ TEST(EtherCatFrame, WhatIsNotEtherCatHasNoDatagrams) {
   other_protocol[13] = std::byte{0xA5};
   auto other_type = from_hex(golden::kAcknowledgeAndInit);
   other_type[15] = std::byte{0x40};  // network variables
-  for (const auto& frame : {other_protocol, other_type}) {
+  auto mailbox_type = from_hex(golden::kAcknowledgeAndInit);
+  mailbox_type[15] = std::byte{0x50};  // mailbox gateway
+  for (const auto& frame : {other_protocol, other_type, mailbox_type}) {
     const auto walked = walk(frame);
     EXPECT_FALSE(walked.ok);
     EXPECT_TRUE(walked.datagrams.empty());

@@ -155,11 +155,12 @@ TEST(EtherCatMailbox, TheHeaderIsReadAndWrittenAsItIsOnTheWire) {
   wire::Writer out(buffer);
   write(out, MailboxHeader{0x0102, 0x1003, 5, 2, 15, 7});
   EXPECT_EQ(hex(buffer), "02 01 03 10 85 7F");
-  const auto back = parse_mail(from_hex("00 00 03 10 85 7F"));
+  const auto back = parse_mail(from_hex("00 00 03 10 85 FF"));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->header.channel, 5);
   EXPECT_EQ(back->header.priority, 2);
-  EXPECT_EQ(back->header.counter, 7);
+  EXPECT_EQ(back->header.type, static_cast<std::uint8_t>(MailboxType::kVoe));
+  EXPECT_EQ(back->header.counter, 7) << "the highest bit is reserved";
 }
 
 TEST(EtherCatMailbox, WhatStandsBehindAMailIsNotPartOfIt) {
@@ -259,6 +260,13 @@ TEST(EtherCatSdo, ValuesEndWhereTheirSizeSaysAndShortSegmentsWhereTheirCommandSa
   EXPECT_EQ(sdo_text(CoeService::kSdoResponse, "0B 41 42 00 00 00 00 00"), "segment uploaded, toggle 0, last, 2 bytes");
   EXPECT_EQ(sdo_text(CoeService::kSdoResponse, "0B 41 42"), "segment uploaded, toggle 0, last, 2 bytes");
   EXPECT_EQ(sdo_text(CoeService::kSdoResponse, "09 41 42"), "missing bytes") << "3 were promised";
+}
+
+TEST(EtherCatSdo, WhatBeginsATransferHasEightBytesAlsoWhereTheLastAreReserved) {
+  EXPECT_EQ(sdo_text(CoeService::kSdoRequest, "40 18 10 01 00 00 00"), "missing bytes");
+  EXPECT_EQ(sdo_text(CoeService::kSdoResponse, "60 18 10 01 00 00 00"), "missing bytes");
+  EXPECT_EQ(sdo_text(CoeService::kSdoResponse, "43 18 10 01 00 00 00"), "missing bytes");
+  EXPECT_EQ(sdo_text(CoeService::kSdoRequest, "60"), "upload segment, toggle 0") << "of a segment they do not matter";
 }
 
 TEST(EtherCatSdo, MessagesAreWrittenAsTheOtherStacksWriteThem) {

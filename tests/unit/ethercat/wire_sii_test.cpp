@@ -46,6 +46,15 @@ TEST(Sii, TheWordsOfADeviceSayWhoItIsAndWhereItsMailboxLies) {
   EXPECT_EQ(*identity, expected);
 }
 
+TEST(Sii, TheTwoMailboxesMayDiffer) {
+  auto words = from_hex(kSoesDevice);
+  words[2 * (sii::kMailbox + 3)] = std::byte{64};
+  const auto identity = parse_sii_identity(words);
+  ASSERT_TRUE(identity);
+  EXPECT_EQ(identity->receive_mailbox_size, 128);
+  EXPECT_EQ(identity->send_mailbox_size, 64);
+}
+
 TEST(Sii, AChangedWordMakesTheChecksumWrongAndIsReadAllTheSame) {
   auto words = from_hex(kSoesDevice);
   words[2 * sii::kAlias] = std::byte{7};
@@ -64,6 +73,7 @@ TEST(SiiOfTheRobot, BeginsWithTheVendorsConfigurationData) {
   const auto image = make_meca500_sii(0, 0);
   EXPECT_EQ(image.size(), 2048U);
   EXPECT_TRUE(std::ranges::equal(Bytes(image).first(14), from_hex(kConfigData)));
+  EXPECT_TRUE(std::ranges::equal(Bytes(image).subspan(2 * sii::kSize, 4), from_hex("0F 00 01 00"))) << "16 KiBit";
 }
 
 TEST(SiiOfTheRobot, SaysWhoItIsWithTheAliasInTheChecksum) {
@@ -105,6 +115,7 @@ TEST(SiiOfTheRobot, HasTheCategoriesOfARealOneWithItsWrongLengths) {
   EXPECT_EQ(found.at(40), from_hex("01 02 03 00"));
   EXPECT_EQ(found.at(41), from_hex("00 10 80 00 26 00 01 01 80 10 80 00 22 00 01 02"
                                    "00 11 7C 00 64 00 01 03 00 14 3C 00 20 00 01 04"));
+  EXPECT_EQ(found.at(60), from_hex("00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 03 01 00 00 00 00 00 00 00"));
   EXPECT_EQ(found.at(30)[5], std::byte{0x27}) << "SDO, SDO information, PDO assignment, complete access";
 }
 
