@@ -22,6 +22,10 @@ struct DeviceSettings {
   std::uint32_t serial = 0;
   std::uint32_t vendor = kMecademicVendor, product = kMeca500Product, revision = kMeca500Revision;
   bool old_sync_manager_types = false;  // 1C00h reads 2, 1, 3, 4 as firmware 8 did
+  // The PDOs are assigned from the start, as the ESI has it. Otherwise as on a robot that was just switched on: 1C12h
+  // and 1C13h have counts and no entries, and SAFEOP is refused until a master has written them.
+  bool assigned = false;
+  bool wants_sii = false;  // PREOP is refused (0050h) while the master has not given the SII back
   // How long the application takes. [ROBOT]: an SDO takes 1 to 28 ms, typically 1.8.
   Time transition = std::chrono::milliseconds(2), mailbox_reply = std::chrono::milliseconds(1);
   EscSettings esc;  // `sii`: made from the identity above when empty
@@ -36,7 +40,7 @@ struct DeviceFaults {
 };
 
 struct DeviceCounters {
-  std::uint64_t outputs = 0;           // complete output images in OP
+  std::uint64_t outputs = 0;  // complete output images in OP
   std::uint64_t watchdog_expiries = 0, sync_errors = 0, refused_states = 0;
   std::uint64_t mails = 0, duplicate_mails = 0, aborts = 0;
   std::uint64_t strict = 0;  // what a careful master does not do; see README
@@ -64,7 +68,8 @@ class Device {
   const image::OutputBytes& output() const noexcept;
   AlState state() const noexcept;
   bool operational() const noexcept { return state() == AlState::kOp; }
-  // An AL error as a robot raises it itself: to SAFEOP (from OP) with this code, or the error bit in the state it is in.
+  // An AL error as a robot raises it itself: to SAFEOP (from OP) with this code, or the error bit in the state it is
+  // in.
   void raise_al_error(std::uint16_t code, Time now) noexcept;
   void send_emergency(const Emergency& emergency) noexcept;
   void power_cycle(Time now) noexcept;

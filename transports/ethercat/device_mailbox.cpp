@@ -1,0 +1,116 @@
+// Mails in and out: one request at a time, counters, repetition, error replies, emergencies (ETG.1000.4, 6.7;
+// ETG.1000.6, 5.6).
+#include <algorithm>
+
+#include "transports/ethercat/device_state.hpp"
+
+namespace meca::ethercat {
+namespace {
+
+// The payload is written by `body` behind the header.
+void prepare(DeviceState& s, MailboxType type, Bytes payload, Time ready) noexcept {
+  MailboxState& box = s.mailbox;
+  box.counter = next_mailbox_counter(box.counter);
+  wire::Writer out(box.reply);
+  write(out, MailboxHeader{.length = static_cast<std::uint16_t>(payload.size()),
+                           .address = s.esc.station_address(),
+                           .type = static_cast<std::uint8_t>(type),
+                           .counter = box.counter});
+  out.bytes(payload);
+  box.reply_size = out.size();
+  box.waiting = true;
+  box.ready = ready;
+}
+
+void prepare_error(DeviceState& s, MailboxError error, Time ready) noexcept {
+  std::array<std::byte, 4> payload{};
+  wire::Writer out(payload);
+  out.u16(1);
+  out.u16(static_cast<std::uint16_t>(error));
+  prepare(s, MailboxType::kError, payload, ready);
+}
+
+void prepare_emergency(DeviceState& s, Time now) noexcept {
+  MailboxState& box = s.mailbox;
+  std::array<std::byte, 10> payload{};
+  wire::Writer out(payload);
+  write(out, CoeHeader{.service = static_cast<std::uint8_t>(CoeService::kEmergency)});
+  write(out, box.emergencies.front());
+  std::shift_left(box.emergencies.begin(), box.emergencies.end(), 1);
+  --box.emergency_count;
+  prepare(s, MailboxType::kCoe, payload, now);
+}
+
+void answer(DeviceState& s, Bytes memory, Time now) noexcept {
+  const Time ready = now + s.settings.mailbox_reply;
+  const auto mail = parse_mail(memory);
+  if (!mail) return prepare_error(s, MailboxError::kInvalidSize, ready);
+  const std::uint8_t counter = mail->header.counter;
+  if (counter != 0 && counter == s.mailbox.last_request) {  // sent again by one who missed our working counter
+    ++s.counters.duplicate_mails;
+    return;
+  }
+  s.mailbox.last_request = counter;
+  ++s.counters.mails;
+  if (s.faults.no_mailbox) return;
+  if (mail->header.type != static_cast<std::uint8_t>(MailboxType::kCoe)) {
+    return prepare_error(s, MailboxError::kUnsupportedProtocol, ready);
+  }
+  std::array<std::byte, CoeServer::kMostPayload> payload;
+  wire::Writer out(payload);
+  const auto error = s.coe.request(s.objects, mail->payload, state_of(s), out);
+  s.counters.aborts = s.coe.aborts();
+  if (error) return prepare_error(s, *error, ready);
+  if (out.size() > 0) prepare(s, MailboxType::kCoe, out.written(), ready);
+}
+
+// What comes without being asked for: the rest of a list, emergencies.
+void prepare_next(DeviceState& s, Time now) noexcept {
+  std::array<std::byte, CoeServer::kMostPayload> payload;
+  wire::Writer out(payload);
+  s.coe.next_fragment(s.objects, out);
+  if (out.size() > 0) return prepare(s, MailboxType::kCoe, out.written(), now);
+  if (s.mailbox.emergency_count > 0) prepare_emergency(s, now);
+}
+
+// A master that has not read the last answer and writes the next mail has lost its place.
+void judge(DeviceState& s) noexcept {
+  constexpr std::uint8_t kFull = 0x08;
+  const bool written = (s.esc.peek(reg::sync_manager(0) + 5) & kFull) != 0;
+  if (written && !s.mailbox.blamed) ++s.counters.strict;
+  s.mailbox.blamed = written;
+}
+
+}  // namespace
+
+void reset_mailbox(DeviceState& s) noexcept {
+  s.mailbox = {};
+  s.coe.reset();
+}
+
+void queue_emergency(DeviceState& s, const Emergency& emergency) noexcept {
+  MailboxState& box = s.mailbox;
+  if (box.emergency_count == box.emergencies.size()) return;  // the oldest say what began it
+  box.emergencies[box.emergency_count++] = emergency;
+}
+
+void serve_mailbox(DeviceState& s, Time now) noexcept {
+  if (state_of(s) == AlState::kInit) return;
+  MailboxState& box = s.mailbox;
+  if (s.esc.mail_fetched()) box.posted = false;
+  if (s.esc.take_repeat_request()) {
+    if (box.reply_size > 0 && !box.waiting) box.posted = s.esc.post_mail(Bytes(box.reply).first(box.reply_size)) || box.posted;
+    s.esc.acknowledge_repeat();
+  }
+  if (box.posted) return judge(s);
+  if (!box.waiting) prepare_next(s, now);
+  if (!box.waiting) {
+    if (const auto memory = s.esc.take_mail()) answer(s, *memory, now);
+  }
+  if (box.waiting && now >= box.ready && s.esc.post_mail(Bytes(box.reply).first(box.reply_size))) {
+    box.waiting = false;
+    box.posted = true;
+  }
+}
+
+}  // namespace meca::ethercat
