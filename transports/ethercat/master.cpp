@@ -1,0 +1,205 @@
+// The front of the master: frames out and in, links, the good-bye.
+#include "transports/ethercat/master.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "transports/ethercat/master_state.hpp"
+
+namespace meca::ethercat {
+namespace {
+
+using Phase = Station::Phase;
+constexpr Time kLeastSilence = std::chrono::milliseconds(100);
+constexpr unsigned kMissesToSay = 10;
+
+StationSettings station_settings(const MasterSettings& settings, std::size_t robot) {
+  StationSettings out = settings.station;
+  out.position = settings.robots[robot].position;
+  out.logical_output = static_cast<std::uint32_t>(robot * kLogicalSize);
+  out.logical_input = out.logical_output + kOutputSize;
+  out.watchdog = settings.watchdog;
+  out.dc = settings.dc;
+  out.sync0_cycle = settings.cycle;
+  out.shift = settings.dc_shift;
+  return out;
+}
+
+MasterSettings without_clocks_in_a_ring(MasterSettings settings) {
+  settings.dc = settings.dc && !settings.redundant;
+  return settings;
+}
+
+}  // namespace
+
+MasterState::MasterState(const MasterSettings& from)
+    : settings(without_clocks_in_a_ring(from)),
+      ports{true, from.redundant},
+      in_flight(from.source),
+      scan(from.station.sii_timeout),
+      clocks(from.dc_epoch),
+      phase(from.cycle, from.dc_shift + from.cycle / 2) {
+  robots.reserve(settings.robots.size());
+  for (std::size_t i = 0; i < settings.robots.size(); ++i) {
+    robots.emplace_back(settings.robots[i], station_settings(settings, i));
+    robots.back().trouble = "the chain is being looked through";
+  }
+  chain.reserve(ChainScan::kMostDevices);
+}
+
+void MasterState::give_up_overdue(Time now) noexcept {
+  while (InFlight::Frame* const frame = in_flight.overdue(settings.frame_timeout, now)) {
+    ++counters.lost_frames;
+    // Of a ring one copy may have come: then that is what there is to know.
+    if (frame->arrived > 0)
+      dispatch(*frame, Bytes(frame->merged).first(frame->size), now);
+    else
+      lost(*frame, now);
+    in_flight.release(*frame);
+  }
+  const Time silence = std::max(settings.watchdog, kLeastSilence);
+  if (any_port() && !silent && heard && now - *heard > silence) {
+    silent = true;
+    out_of_reach("no device answers; check the cable to the first robot and its power", now);
+  }
+}
+
+void MasterState::out_of_reach(std::string_view why, Time now) noexcept {
+  reached = false;
+  count = states = 0;
+  count_stands = 0;
+  scanned_count.reset();
+  scan.stop();
+  clocks.forget();
+  phase.reset();
+  for (Robot& robot : robots) {
+    robot.trouble = why;
+    if (robot.life == 0) continue;
+    robot.station.absent(why, now);
+    robot.life = 0;
+    ++robot.generation;
+  }
+}
+
+void MasterState::dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept {
+  DatagramWalk<const std::byte> walk(reply);
+  if (frame.use == InFlight::Use::kService) service_in_flight = false;
+  for (std::size_t i = 0; i < frame.count; ++i) {
+    const auto datagram = walk.next();
+    if (!datagram) return;
+    const Purpose& purpose = frame.datagrams[i].purpose;
+    if (frame.use == InFlight::Use::kCyclic)
+      cyclic_reply(frame, purpose, datagram->working_counter(), datagram->data(), now);
+    else
+      service_reply(purpose, datagram->working_counter(), datagram->data(), now);
+  }
+}
+
+void MasterState::lost(const InFlight::Frame& frame, Time now) noexcept {
+  if (frame.use == InFlight::Use::kCyclic) return;
+  service_in_flight = false;
+  for (std::size_t i = 0; i < frame.count; ++i) service_lost(frame.datagrams[i].purpose, now);
+}
+
+Master::Master(const MasterSettings& settings) : state_(std::make_unique<MasterState>(settings)) {}
+Master::~Master() = default;
+Master::Master(Master&&) noexcept = default;
+Master& Master::operator=(Master&&) noexcept = default;
+
+void Master::begin_cycle(Time now) noexcept {
+  state_->give_up_overdue(now);
+  state_->begin_cycle(now);
+}
+
+Bytes Master::next_frame(Time now) noexcept {
+  state_->give_up_overdue(now);
+  if (!state_->any_port()) return {};
+  Bytes frame = state_->cyclic_frame(now);
+  if (frame.empty()) frame = state_->service_frame(now);
+  if (!frame.empty()) ++state_->counters.sent_frames;
+  return frame;
+}
+
+Time Master::next_event() const noexcept {
+  if (state_->cyclic_due) return Time::min();
+  Time out = state_->next_service_event();
+  if (const auto oldest = state_->in_flight.oldest()) out = std::min(out, *oldest + state_->settings.frame_timeout);
+  return out;
+}
+
+bool Master::on_both_ports() const noexcept { return state_->both_ports; }
+
+void Master::received(Port port, Bytes frame, Time now) noexcept {
+  MasterState& state = *state_;
+  const auto arrival = state.in_flight.received(static_cast<std::size_t>(port), frame);
+  if (arrival.verdict == InFlight::Verdict::kMalformed) ++state.counters.malformed_frames;
+  if (arrival.verdict == InFlight::Verdict::kUnexpected) ++state.counters.unexpected_frames;
+  if (arrival.frame == nullptr || arrival.verdict == InFlight::Verdict::kUnexpected) return;
+  ++state.counters.received_frames;
+  const bool cyclic = arrival.frame->use == InFlight::Use::kCyclic;
+  const bool counts_all = cyclic && arrival.frame->datagrams[0].purpose.kind == Purpose::Kind::kChainState;
+  if (state.settings.redundant && counts_all && port == Port::kPrimary && arrival.frame->awaited > 1) {
+    // Of a whole ring the frame of the primary port comes back at the other one; what comes back here passed nobody.
+    DatagramWalk<const std::byte> walk(frame);
+    state.ring_open = walk.next()->working_counter() > 0;
+  }
+  if (arrival.verdict != InFlight::Verdict::kComplete) return;
+  if (cyclic) {
+    state.round_trip.add(now - arrival.frame->sent, now);
+    if (arrival.frame->cycle != state.cycle) ++state.counters.late_frames;
+  }
+  state.dispatch(*arrival.frame, arrival.reply, now);
+  state.in_flight.release(*arrival.frame);
+}
+
+void Master::link_changed(Port port, bool up, Time now) noexcept {
+  MasterState& state = *state_;
+  state.ports[static_cast<std::size_t>(port)] = up && (port == Port::kPrimary || state.settings.redundant);
+  if (state.settings.redundant && state.copies() == 1) {
+    state.ring_open = true;
+    state.in_flight.await_one_copy();
+  }
+  if (state.any_port()) {
+    if (!state.reached) state.heard = now;  // time to answer
+    return;
+  }
+  state.cyclic_due = state.silent = false;
+  state.out_of_reach("no carrier", now);
+}
+
+void Master::close(Time now) noexcept {
+  state_->closing = true;
+  state_->scan.stop();
+  for (Robot& robot : state_->robots) robot.station.close(now);
+}
+
+bool Master::closed() const noexcept {
+  const auto is_closed = [](const Robot& robot) {
+    return robot.life == 0 || robot.station.phase() == Phase::kClosed || robot.station.phase() == Phase::kAbsent;
+  };
+  return state_->closing && (!state_->any_port() || std::ranges::all_of(state_->robots, is_closed));
+}
+
+void Master::set_output(std::size_t robot, const image::OutputBytes& output, bool valid) noexcept {
+  if (valid) state_->robots[robot].output = output;
+}
+
+bool Master::take_fresh(std::size_t robot) noexcept { return std::exchange(state_->robots[robot].fresh, false); }
+const image::InputBytes& Master::input(std::size_t robot) const noexcept { return state_->robots[robot].input; }
+const Station& Master::station(std::size_t robot) const noexcept { return state_->robots[robot].station; }
+
+std::string_view Master::trouble(std::size_t index) const noexcept {
+  const Robot& robot = state_->robots[index];
+  if (!robot.trouble.empty()) return robot.trouble;
+  if (robot.misses >= kMissesToSay) return "its process data is not counted as it should be: inputs are not taken";
+  return robot.station.trouble();
+}
+
+const RobotCounters& Master::counters(std::size_t robot) const noexcept { return state_->robots[robot].counters; }
+const MasterCounters& Master::counters() const noexcept { return state_->counters; }
+const Histogram& Master::round_trip() const noexcept { return state_->round_trip; }
+std::span<const ChainDevice> Master::chain() const noexcept { return state_->chain; }
+bool Master::ring_open() const noexcept { return state_->settings.redundant && state_->ring_open; }
+Time Master::dc_phase_correction() const noexcept { return state_->phase.correction(); }
+
+}  // namespace meca::ethercat

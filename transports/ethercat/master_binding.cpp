@@ -1,0 +1,127 @@
+// Which device of the chain is which robot, and what to say of those that are none.
+#include <algorithm>
+
+#include "transports/ethercat/master_state.hpp"
+
+namespace meca::ethercat {
+namespace {
+
+using Text = transports::LinkDetail;
+
+constexpr std::uint32_t kMcs500Product = 0x04DC5500;
+
+const char* product_name(std::uint32_t vendor, std::uint32_t product) noexcept {
+  if (vendor != kMecademicVendor) return "";
+  return product == kMeca500Product ? " (Meca500)" : product == kMcs500Product ? " (MCS500)" : " (Mecademic)";
+}
+
+bool is_meca500(const SiiIdentity& identity) noexcept {
+  return identity.vendor == kMecademicVendor && identity.product == kMeca500Product;
+}
+
+Text not_there(unsigned position, std::size_t count) noexcept {
+  if (count == 0) return Text::format("position %u is not there: no device answers; check cable and power", position);
+  return Text::format("position %u is not there: %zu %s; check cable and power behind position %zu", position, count,
+                      count == 1 ? "device answers" : "devices answer", count - 1);
+}
+
+}  // namespace
+
+const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) const noexcept {
+  const auto devices = scan.devices();
+  const auto alias_of = [](const ChainScan::Device& device) {
+    return device.identified && is_meca500(device.identity) ? device.identity.alias : std::uint16_t{0};
+  };
+  if (robot.place.alias) {
+    const unsigned alias = *robot.place.alias;
+    const ChainScan::Device* found = nullptr;
+    for (const ChainScan::Device& device : devices) {
+      if (alias_of(device) != alias) continue;
+      if (found != nullptr) {
+        why = Text::format("alias %u is there twice, at positions %u and %u; give each robot its own", alias,
+                           unsigned{found->position}, unsigned{device.position});
+        return nullptr;
+      }
+      found = &device;
+    }
+    if (found == nullptr)
+      why = Text::format("no robot with alias %u is there: %zu %s; check cable and power, and the alias in its SII", alias,
+                         devices.size(), devices.size() == 1 ? "device answers" : "devices answer");
+    return found;
+  }
+  const unsigned position = robot.place.position;
+  const auto at = std::ranges::find(devices, robot.place.position, &ChainScan::Device::position);
+  if (at == devices.end()) {
+    why = not_there(position, devices.size());
+    return nullptr;
+  }
+  const SiiIdentity& id = at->identity;
+  if (!at->identified) {
+    const auto trouble = at->trouble.view();
+    why = Text::format("position %u does not say who it is: %.*s", position, static_cast<int>(trouble.size()),
+                       trouble.data());
+    return nullptr;
+  }
+  if (!is_meca500(id)) {
+    why = Text::format("position %u is vendor 0x%08X, product 0x%08X%s, not a Meca500 (vendor 0x%08X, product 0x%08X): "
+                       "it is left alone; check the order of the cables and the positions in the configuration",
+                       position, id.vendor, id.product, product_name(id.vendor, id.product), kMecademicVendor,
+                       kMeca500Product);
+    return nullptr;
+  }
+  const auto wanted_by = std::ranges::find_if(
+      robots, [&](const Robot& other) { return other.place.alias && *other.place.alias == id.alias; });
+  if (wanted_by != robots.end()) {
+    why = Text::format("position %u is the robot with alias %u, which is another one in the configuration", position,
+                       unsigned{id.alias});
+    return nullptr;
+  }
+  return &*at;
+}
+
+void MasterState::bind(Robot& robot, Time now) noexcept {
+  Text why;
+  const ChainScan::Device* const device = device_of(robot, why);
+  if (device != nullptr && device->life == robot.life) return;  // it runs on as if nothing had been
+  if (robot.life != 0 || device == nullptr)
+    robot.station.absent(device == nullptr ? why.view() : "it was switched off and on, or exchanged", now);
+  robot.trouble = why;
+  robot.life = 0;
+  robot.misses = robot.silent = 0;
+  robot.al_status = 0;
+  robot.errors.clear = false;
+  ++robot.generation;
+  if (device == nullptr) return;
+  robot.life = device->life;
+  robot.cannot_lrw = (device->features & kFeatureNoLrw) != 0;
+  if (settings.dc && (device->features & kFeatureDc) == 0)
+    robot.trouble = Text::format("position %u has no distributed clock; set dc: false", unsigned{device->position});
+  robot.al_due = true;
+  robot.next_errors = now;
+  robot.station.found(device->address, device->identity, now);
+}
+
+void MasterState::bind(Time now) noexcept {
+  for (Robot& robot : robots) bind(robot, now);
+  list_chain();
+  if (settings.dc) clocks.start(scan.devices());
+}
+
+void MasterState::list_chain() noexcept {
+  chain.clear();
+  for (const ChainScan::Device& device : scan.devices()) {
+    ChainDevice row{.station_address = device.address,
+                    .al_status = 0,
+                    .vendor = device.identity.vendor,
+                    .product = device.identity.product,
+                    .robot = std::nullopt};
+    const auto robot = std::ranges::find(robots, device.life, &Robot::life);
+    if (robot != robots.end()) {
+      row.robot = static_cast<std::size_t>(robot - robots.begin());
+      row.al_status = robot->al_status;
+    }
+    chain.push_back(row);
+  }
+}
+
+}  // namespace meca::ethercat

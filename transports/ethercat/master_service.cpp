@@ -1,0 +1,165 @@
+// Everything that is not process data: one small frame at a time, in which each who wants something has a datagram.
+#include <algorithm>
+
+#include "transports/ethercat/master_state.hpp"
+
+namespace meca::ethercat {
+namespace {
+
+constexpr Time kAlStatusPeriod = std::chrono::milliseconds(100), kErrorsPeriod = std::chrono::seconds(1),
+               kDifferencePeriod = std::chrono::milliseconds(100), kScanPause = std::chrono::milliseconds(100),
+               kUnreadablePause = std::chrono::seconds(1);
+constexpr std::uint16_t kAlStatusSize = 6;  // status, reserved, code
+// A service frame does not grow beyond it, however many want something: 700 bytes are 56 us of a 100 Mbit/s line.
+constexpr std::size_t kMostServiceBytes = 560;
+constexpr unsigned kSilentToScan = 3;
+// The device's counters stop at 255.
+constexpr std::uint8_t kClearFrom = 128;
+
+}  // namespace
+
+Bytes MasterState::service_frame(Time now) noexcept {
+  if (service_in_flight || now < next_service) return {};
+  next_service = now + settings.service_period;
+  look_after_scan(now);
+  for (Robot& robot : robots) robot.station.tick(now);
+  if (!in_flight.begin(InFlight::Use::kService, cycle)) return {};
+  const bool by_position = settings.redundant && scan.running() && scan.by_position();
+  if (scan.running()) scan.add_to(in_flight, now);
+  if (!by_position) {
+    clocks.add_to(in_flight, now);
+    add_robots(now);
+  }
+  both_ports = !by_position;
+  const Bytes frame = in_flight.finish(by_position ? 1 : copies(), now);
+  service_in_flight = !frame.empty();
+  return frame;
+}
+
+void MasterState::look_after_scan(Time now) noexcept {
+  if (closing) return;
+  if (scan_wanted && !scan.running() && reached && now >= next_scan) {
+    scan_wanted = false;
+    scanned_count = count;
+    ++counters.scans;
+    scan.start();
+  }
+  scan.tick(now);
+  if (!scan.take_end()) return;
+  next_scan = now + kScanPause;
+  bind(now);
+  if (!std::ranges::all_of(scan.devices(), &ChainScan::Device::identified)) {
+    next_scan = now + kUnreadablePause;
+    scan_wanted = true;
+  }
+}
+
+void MasterState::add_robots(Time now) noexcept {
+  const std::size_t all = robots.size(), room = in_flight.room();
+  for (std::size_t k = 0; k < all; ++k) {
+    const std::size_t index = (first_robot + k) % all;
+    if (room - std::min(room, in_flight.room()) > kMostServiceBytes) {
+      first_robot = index;
+      return;
+    }
+    if (robots[index].life != 0) add_robot(index, now);
+  }
+}
+
+void MasterState::add_robot(std::size_t index, Time now) noexcept {
+  Robot& robot = robots[index];
+  const std::uint16_t address = robot.station.station_address();
+  const auto purpose = [&](Purpose::Kind kind) {
+    return Purpose{kind, robot.generation, static_cast<std::uint16_t>(index)};
+  };
+  const auto read = [&](std::uint16_t ado, std::uint16_t size, Purpose::Kind kind) {
+    return in_flight.add({Command::kFprd, address_of(address, ado), size, {}, purpose(kind)});
+  };
+  if (robot.al_due || now >= robot.next_al) {
+    robot.al_due = !read(reg::kAlStatus, kAlStatusSize, Purpose::Kind::kAlStatus);
+    if (!robot.al_due) robot.next_al = now + kAlStatusPeriod;
+  }
+  if (const auto access = robot.station.next(now))
+    in_flight.add({access->write ? Command::kFpwr : Command::kFprd, address_of(address, access->address), access->size,
+                   access->data, purpose(Purpose::Kind::kStation)});
+  if (robot.errors.clear)
+    robot.errors.clear = !in_flight.add({Command::kFpwr, address_of(address, reg::kRxErrors), reg::kErrorCountersSize,
+                                         {}, purpose(Purpose::Kind::kClearErrorCounters)});
+  else if (now >= robot.next_errors && read(reg::kRxErrors, reg::kErrorCountersSize, Purpose::Kind::kErrorCounters))
+    robot.next_errors = now + kErrorsPeriod;
+  if (clocks.ready() && now >= robot.next_difference &&
+      read(reg::kDcDifference, 4, Purpose::Kind::kClockDifference))
+    robot.next_difference = now + kDifferencePeriod;
+}
+
+void MasterState::service_reply(const Purpose& purpose, std::uint16_t working_counter, Bytes data, Time now) noexcept {
+  if (purpose.kind == Purpose::Kind::kScan) return scan.answered(purpose, working_counter, data, now);
+  if (purpose.kind == Purpose::Kind::kClocks) return clocks.answered(purpose, working_counter, data);
+  Robot& robot = robots[purpose.of];
+  if (purpose.step != robot.generation || robot.life == 0) return;
+  if (purpose.kind == Purpose::Kind::kAlStatus) return al_status_reply(robot, working_counter, data, now);
+  if (purpose.kind == Purpose::Kind::kStation) return robot.station.answered(working_counter, data, now);
+  if (working_counter != kOneWay) return;
+  if (purpose.kind == Purpose::Kind::kErrorCounters) return error_counters_reply(robot, data);
+  wire::Reader in(data);
+  if (purpose.kind == Purpose::Kind::kClockDifference) robot.counters.dc_difference_ns = clock_difference(in.u32());
+  if (purpose.kind == Purpose::Kind::kClearErrorCounters) robot.errors.last = {};
+}
+
+void MasterState::service_lost(const Purpose& purpose, Time now) noexcept {
+  if (purpose.kind == Purpose::Kind::kScan) return scan.lost(purpose, now);
+  if (purpose.kind == Purpose::Kind::kClocks) return clocks.lost(purpose);
+  Robot& robot = robots[purpose.of];
+  if (purpose.step != robot.generation || robot.life == 0) return;
+  if (purpose.kind == Purpose::Kind::kStation) robot.station.lost(now);
+  if (purpose.kind == Purpose::Kind::kAlStatus) robot.al_due = true;
+}
+
+void MasterState::al_status_reply(Robot& robot, std::uint16_t working_counter, Bytes data, Time now) noexcept {
+  if (working_counter != kOneWay) {
+    robot.al_due = true;
+    if (++robot.silent % kSilentToScan == 0) scan_wanted = true;
+    return;
+  }
+  robot.silent = 0;
+  wire::Reader in(data);
+  robot.al_status = in.u16();
+  in.skip(2);
+  robot.station.al_status(robot.al_status, in.u16(), now);
+  list_chain();
+}
+
+void MasterState::error_counters_reply(Robot& robot, Bytes data) noexcept {
+  // Of ports 0 and 1: invalid frames, receive errors; lost links.
+  constexpr std::size_t kLinks = reg::kLostLinks - reg::kRxErrors;
+  constexpr std::array<std::size_t, 6> kAt{0, 2, 1, 3, kLinks, kLinks + 1};
+  const std::array<std::uint32_t*, 6> sums{
+      &robot.counters.invalid_frames[0], &robot.counters.invalid_frames[1], &robot.counters.rx_errors[0],
+      &robot.counters.rx_errors[1],      &robot.counters.lost_links[0],     &robot.counters.lost_links[1]};
+  ErrorCounterReading& reading = robot.errors;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const auto value = std::to_integer<std::uint8_t>(data[kAt[i]]);
+    // What stood there before us is not ours; fewer than before: somebody cleared them.
+    const std::uint8_t more = value >= reading.last[i] ? static_cast<std::uint8_t>(value - reading.last[i]) : value;
+    if (reading.known) *sums[i] += more;
+    reading.last[i] = value;
+    reading.clear = reading.clear || value >= kClearFrom;
+  }
+  reading.known = true;
+}
+
+Time MasterState::next_service_event() const noexcept {
+  if (service_in_flight || !any_port()) return Time::max();  // its time-out comes from what is in flight
+  Time wanted = Time::max();
+  if (scan.running() || clocks.running()) wanted = next_service;
+  if (scan_wanted && reached && !closing) wanted = std::min(wanted, next_scan);
+  for (const Robot& robot : robots) {
+    wanted = std::min(wanted, robot.station.next_event());
+    if (robot.life == 0) continue;
+    wanted = std::min({wanted, robot.al_due ? next_service : robot.next_al, robot.next_errors});
+    if (clocks.ready()) wanted = std::min(wanted, robot.next_difference);
+  }
+  return std::max(wanted, next_service);
+}
+
+}  // namespace meca::ethercat
