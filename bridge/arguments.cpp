@@ -61,7 +61,9 @@ std::string transport_details(const RobotConfig& robot) {
              to_string(robot.ethernet_ip.rpi * robot.ethernet_ip.timeout_multiplier) +
              (robot.ethernet_ip.multicast ? ", multicast" : "");
     case TransportType::kEthercat:
-      return robot.ethercat.interface + ", position " + std::to_string(robot.ethercat.position);
+      return robot.ethercat.interface + (robot.ethercat.alias
+                                             ? ", alias " + std::to_string(*robot.ethercat.alias)
+                                             : ", position " + std::to_string(robot.ethercat.position));
     case TransportType::kProfinet:
       return robot.profinet.interface + ", station " + robot.profinet.station_name;
   }

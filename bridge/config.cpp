@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "bridge/config_ethercat.hpp"
 #include "bridge/config_ethernet_ip.hpp"
 #include "bridge/config_reader.hpp"
 #include "bridge/config_robots.hpp"
@@ -168,6 +169,7 @@ ConfigResult parse_config(std::string_view text, const std::string& file_name) {
     config.log = read_log(root);
     config.realtime = read_realtime(root);
     config.ethernet_ip = read_ethernet_ip_bus(root, config.robots);
+    config.ethercat = read_ethercat_segments(root, config.robots);
     config.dds = read_dds(root, config.robots);
   }
   return std::move(report).result(std::move(config));

@@ -57,8 +57,9 @@ struct EthernetIpConfig {
   bool fast = false;  // the device takes shorter intervals than the EDS of the robot allows
 };
 struct EthercatConfig {
-  std::string interface;       // network interface of the segment
-  std::uint16_t position = 0;  // position on the segment, 0 = first
+  std::string interface;               // network interface of the segment
+  std::uint16_t position = 0;          // position on the segment, 0 = first
+  std::optional<std::uint16_t> alias;  // station alias in place of the position
 };
 struct ProfinetConfig {
   std::string interface;
@@ -97,6 +98,16 @@ struct EthernetIpBusConfig {
   std::uint32_t serial_number = 0;  // 0: made of this machine and this bridge
 };
 
+// What the EtherCAT robots on one network interface share.
+struct EthercatSegmentConfig {
+  std::string interface;
+  std::string redundant_interface;  // where the ring comes back; empty: a line
+  bool dc = false;
+  std::chrono::nanoseconds dc_shift{};
+  std::chrono::nanoseconds watchdog = std::chrono::milliseconds(100);
+  bool separate = false;  // LRD and LWR in place of LRW
+};
+
 struct LogConfig {
   std::string level = "info";
 };
@@ -112,6 +123,7 @@ struct Config {
   LogConfig log;
   RealtimeConfig realtime;
   EthernetIpBusConfig ethernet_ip;
+  std::vector<EthercatSegmentConfig> ethercat;  // one of every interface that an EtherCAT robot names, in their order
   std::vector<RobotConfig> robots;
 };
 

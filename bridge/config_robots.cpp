@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "bridge/config_ethercat.hpp"
 #include "bridge/config_ethernet_ip.hpp"
 #include "bridge/config_values.hpp"
 #include "transports/image/dynamic_data_types.hpp"
@@ -21,17 +22,16 @@ struct TypeInfo {
   TransportType type;
   std::string_view name;
   bool available;  // this build can run it: THE place to switch a transport on
-  nanoseconds shortest_cycle, default_cycle;
+  nanoseconds shortest_cycle, default_cycle, longest_cycle;
 };
 // Shortest cycles: ethernet_ip as shortest_rpi() says; profinet and ethercat 1 ms as the manual says; builtin what a
 // soft-real-time thread can keep.
 constexpr std::array kTypes{
-    TypeInfo{TransportType::kBuiltin, "builtin", true, 500us, 1ms},
-    TypeInfo{TransportType::kEthernetIp, "ethernet_ip", true, 10ms, 10ms},
-    TypeInfo{TransportType::kEthercat, "ethercat", false, 1ms, 1ms},
-    TypeInfo{TransportType::kProfinet, "profinet", false, 1ms, 1ms},
+    TypeInfo{TransportType::kBuiltin, "builtin", true, 500us, 1ms, 1s},
+    TypeInfo{TransportType::kEthernetIp, "ethernet_ip", true, 10ms, 10ms, 1s},
+    TypeInfo{TransportType::kEthercat, "ethercat", true, 1ms, 1ms, kLongestEthercatCycle},
+    TypeInfo{TransportType::kProfinet, "profinet", false, 1ms, 1ms, 1s},
 };
-constexpr nanoseconds kLongestCycle = 1s;
 
 constexpr const TypeInfo& info(TransportType type) { return kTypes[static_cast<std::size_t>(type)]; }
 
@@ -39,7 +39,7 @@ constexpr const TypeInfo& info(TransportType type) { return kTypes[static_cast<s
 struct Placed {
   RobotConfig robot;
   std::string path;  // "robots[0]"
-  yaml::Mark name, cycle, address, position, control_socket;
+  yaml::Mark name, cycle, address, place, control_socket;
 };
 
 bool is_speakable_firmware(std::string_view text) {
@@ -71,19 +71,10 @@ void read_builtin(const Section& transport, BuiltinConfig& out) {
                  is_control_socket, out.control_socket);
 }
 
-void read_interface(const Section& transport, std::string& out) {
+void read_profinet(const Section& transport, ProfinetConfig& out) {
   transport.require("interface", "interface: eth1");
   transport.text("interface", "the name of a network interface as 'ip link' shows it, e.g. eth1",
-                 config_values::is_interface_name, out);
-}
-
-void read_ethercat(const Section& transport, EthercatConfig& out) {
-  read_interface(transport, out.interface);
-  transport.integer("position", 0, 65535, out.position);
-}
-
-void read_profinet(const Section& transport, ProfinetConfig& out) {
-  read_interface(transport, out.interface);
+                 config_values::is_interface_name, out.interface);
   transport.require("station_name", "station_name: meca500-1");
   transport.text("station_name", "a PROFINET station name: a-z 0-9 - in labels joined by dots, e.g. meca500-1",
                  config_values::is_station_name, out.station_name);
@@ -121,7 +112,7 @@ std::optional<Section> read_transport(const Section& robot, Placed& placed) {
   RobotConfig& config = placed.robot;
   config.type = kTypes[index].type;
   placed.address = transport.mark("address");
-  placed.position = transport.mark("position");
+  placed.place = transport.mark(transport.find("alias") != nullptr ? "alias" : "position");
   placed.control_socket = transport.mark("control_socket");
   switch (config.type) {
     case TransportType::kBuiltin:
@@ -263,7 +254,8 @@ Placed read_robot(const Section& robot, std::string path) {
   const std::optional<Section> transport = read_transport(robot, placed);
   if (transport) config.cycle = info(config.type).default_cycle;
   const bool cycle_right =
-      robot.duration("cycle", shortest_cycle(config), kLongestCycle, config.cycle) || robot.find("cycle") == nullptr;
+      robot.duration("cycle", shortest_cycle(config), info(config.type).longest_cycle, config.cycle) ||
+      robot.find("cycle") == nullptr;
   if (transport && cycle_right && config.type == TransportType::kEthernetIp) {
     settle_ethernet_ip(*transport, config.cycle, config.ethernet_ip);
   }
@@ -299,8 +291,13 @@ void check_pair(const Placed& first, const Placed& second, Report& report) {
   const bool same_segment = a.type == TransportType::kEthercat && b.type == TransportType::kEthercat &&
                             !a.ethercat.interface.empty() && a.ethercat.interface == b.ethercat.interface;
   if (!same_segment) return;
-  if (a.ethercat.position == b.ethercat.position) {
-    report.error(second.position, second.path + ".transport.position",
+  if (a.ethercat.alias && a.ethercat.alias == b.ethercat.alias) {
+    report.error(second.place, second.path + ".transport.alias",
+                 std::to_string(*b.ethercat.alias) + " is already the alias of " + first.path + " on '" +
+                     b.ethercat.interface + "'; aliases on one segment must differ");
+  }
+  if (!a.ethercat.alias && !b.ethercat.alias && a.ethercat.position == b.ethercat.position) {
+    report.error(second.place, second.path + ".transport.position",
                  std::to_string(b.ethercat.position) + " is already the position of " + first.path + " on '" +
                      b.ethercat.interface + "'; positions on one segment must differ");
   }

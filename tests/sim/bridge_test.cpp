@@ -280,8 +280,9 @@ TEST(EndToEnd, ATransportThatIsNotBuiltYetSaysSo) {
     Bridge bridge(cell({config}));
     FAIL() << "no error";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(),
-                 "arm1: transport type 'profinet' is not built yet; this version has 'builtin' and 'ethernet_ip'");
+    EXPECT_STREQ(
+        error.what(),
+        "arm1: transport type 'profinet' is not built yet; this version has 'builtin', 'ethernet_ip' and 'ethercat'");
   }
 }
 

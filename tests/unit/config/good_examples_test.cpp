@@ -119,9 +119,8 @@ TEST(Reference, HasItsOtherTransportsRightAndOnlyTheirAbsenceToComplainOf) {
   std::vector<std::string> messages;
   for (const ConfigError& error : result.errors) messages.push_back(error.key + ": " + error.message);
   EXPECT_THAT(messages,
-              testing::ElementsAre(
-                  "robots[2].transport.type: 'ethercat' is not in this version yet; it has 'builtin', 'ethernet_ip'",
-                  "robots[3].transport.type: 'profinet' is not in this version yet; it has 'builtin', 'ethernet_ip'"));
+              testing::ElementsAre("robots[4].transport.type: 'profinet' is not in this version yet; it has 'builtin', "
+                                   "'ethernet_ip', 'ethercat'"));
 }
 
 // The first of the other transports alone, and with nothing but its address.
@@ -146,6 +145,33 @@ TEST(Reference, HasTheDefaultsOfEthernetIp) {
   EXPECT_EQ(a.ethernet_ip.key_minor, b.ethernet_ip.key_minor);
   EXPECT_EQ(a.ethernet_ip.large_forward_open, b.ethernet_ip.large_forward_open);
   EXPECT_EQ(a.ethernet_ip.fast, b.ethernet_ip.fast);
+}
+
+// Robots alone on their interface, the first ones without a segment of its own in the file.
+TEST(Reference, HasTheDefaultsOfEthercat) {
+  std::string text = reference_with_all_transports();
+  text.resize(text.find("  - name: arm5"));
+  const auto reference = parse_config(text, "reference.yaml").config;
+  const auto smallest =
+      parse_config("robots: [{name: arm1, transport: {type: ethercat, interface: eth1}}]", "smallest.yaml").config;
+  ASSERT_TRUE(reference && smallest);
+  ASSERT_EQ(reference->robots.size(), 4U);
+  const RobotConfig &a = reference->robots[2], &b = smallest->robots[0];
+  EXPECT_EQ(a.cycle, b.cycle);
+  EXPECT_EQ(a.ethercat.interface, b.ethercat.interface);
+  EXPECT_EQ(a.ethercat.position, b.ethercat.position);
+  EXPECT_EQ(a.ethercat.alias, b.ethercat.alias);
+  EXPECT_EQ(reference->robots[3].ethercat.alias, 12);
+  ASSERT_EQ(reference->ethercat.size(), 1U);
+  ASSERT_EQ(smallest->ethercat.size(), 1U);
+  const EthercatSegmentConfig &c = reference->ethercat[0], &d = smallest->ethercat[0];
+  EXPECT_EQ(c.interface, d.interface);
+  EXPECT_EQ(d.redundant_interface, "");  // the only one that is written away from its default
+  EXPECT_EQ(c.redundant_interface, "eth2");
+  EXPECT_EQ(c.dc, d.dc);
+  EXPECT_EQ(c.dc_shift, d.dc_shift);
+  EXPECT_EQ(c.watchdog, d.watchdog);
+  EXPECT_EQ(c.separate, d.separate);
 }
 
 TEST(Reference, GivesTheSameConfigurationAsTheSmallestFile) {
@@ -221,6 +247,9 @@ dds:
 log: {level: trace}
 realtime: {priority: 80, lock_memory: true, cpus: [2, 3]}
 ethernet_ip: {bind: 0.0.0.0, io_port: 2223, vendor_id: 4660, serial_number: 4294967295}
+ethercat:
+  segments:
+    - {interface: eth1, redundant_interface: eth2, dc: true, dc_shift: 250us, watchdog: 50ms, separate: true}
 robots:
   - name: arm_1-A
     transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false,
@@ -241,6 +270,8 @@ robots:
     transport: {type: ethernet_ip, address: robot3.cell, tcp_port: 44819, rpi: 7.5ms, timeout_multiplier: 64,
                 multicast: true, key: exact, key_revision: "10.2", large_forward_open: true, fast: true}
     cycle: 5ms
+  - {name: "4", transport: {type: ethercat, interface: eth3, position: 63}, cycle: 20ms, control: {velocity_lease: 60ms}}
+  - {name: "5", transport: {type: ethercat, interface: eth1, alias: 65535}, cycle: 2ms}
 )",
                                            "all.yaml");
   ASSERT_EQ(letters(result.errors), "");
@@ -266,7 +297,7 @@ robots:
   EXPECT_EQ(c.ethernet_ip.io_port, 2223);
   EXPECT_EQ(c.ethernet_ip.vendor_id, 4660);
   EXPECT_EQ(c.ethernet_ip.serial_number, 4294967295U);
-  ASSERT_EQ(c.robots.size(), 3U);
+  ASSERT_EQ(c.robots.size(), 5U);
   const EthernetIpConfig& e = c.robots[2].ethernet_ip;
   EXPECT_EQ(c.robots[2].type, TransportType::kEthernetIp);
   EXPECT_EQ(e.address, "robot3.cell");
@@ -279,6 +310,21 @@ robots:
   EXPECT_EQ(e.key_minor, 2);
   EXPECT_TRUE(e.large_forward_open);
   EXPECT_TRUE(e.fast);
+  EXPECT_EQ(c.robots[3].type, TransportType::kEthercat);
+  EXPECT_EQ(c.robots[3].cycle, 20ms);
+  EXPECT_EQ(c.robots[3].ethercat.interface, "eth3");
+  EXPECT_EQ(c.robots[3].ethercat.position, 63);
+  EXPECT_EQ(c.robots[3].ethercat.alias, std::nullopt);
+  EXPECT_EQ(c.robots[4].ethercat.alias, 65535);
+  ASSERT_EQ(c.ethercat.size(), 2U);
+  EXPECT_EQ(c.ethercat[0].interface, "eth3");  // with the defaults
+  EXPECT_EQ(c.ethercat[0].watchdog, 100ms);
+  EXPECT_EQ(c.ethercat[1].interface, "eth1");
+  EXPECT_EQ(c.ethercat[1].redundant_interface, "eth2");
+  EXPECT_TRUE(c.ethercat[1].dc);
+  EXPECT_EQ(c.ethercat[1].dc_shift, 250us);
+  EXPECT_EQ(c.ethercat[1].watchdog, 50ms);
+  EXPECT_TRUE(c.ethercat[1].separate);
   const RobotConfig& r = c.robots[0];
   EXPECT_EQ(r.name, "arm_1-A");
   EXPECT_EQ(r.builtin.product, "R3");
@@ -345,6 +391,29 @@ TEST(ParseConfig, WarnsOfWatchdogsThatAreTooNervousOrTooLazyAndOfAKeyWithoutUse)
             "gone; 5s or less is better\n"
             "odd.yaml:4:80: robots[2].transport.key_revision: is not used without a key; write 'key: compatible' or "
             "'key: exact' as well\n");
+}
+
+TEST(ParseConfig, WarnsOfEthercatSegmentsThatNobodyUsesAndOfWhatDoesNothing) {
+  const ConfigResult result = parse_config(R"(ethercat:
+  segments:
+    - {interface: eth1, watchdog: 10ms, dc_shift: 1us}
+    - {interface: eth2}
+    - {interface: eth3, watchdog: 6s}
+robots:
+  - {name: arm1, transport: {type: ethercat, interface: eth1}}
+  - {name: arm3, transport: {type: ethercat, interface: eth3}}
+)",
+                                           "odd.yaml");
+  ASSERT_TRUE(result.config.has_value());
+  EXPECT_EQ(
+      letters(result.warnings),
+      "odd.yaml:3:35: ethercat.segments[0].watchdog: 10ms: one hiccup of this machine stops the robots; from 40ms "
+      "on it suits a system that is not real-time\n"
+      "odd.yaml:3:51: ethercat.segments[0].dc_shift: is not used without distributed clocks; write 'dc: true' as "
+      "well\n"
+      "odd.yaml:4:19: ethercat.segments[1].interface: no robot names 'eth2'; the segment is not opened\n"
+      "odd.yaml:5:35: ethercat.segments[2].watchdog: 6s: the robot notices only then that the bridge is gone; 5s "
+      "or less is better\n");
 }
 
 }  // namespace
