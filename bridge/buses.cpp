@@ -9,6 +9,7 @@
 
 #include "sim/robot.hpp"
 #include "transports/builtin/builtin.hpp"
+#include "transports/ethercat/transport.hpp"
 #include "transports/ethernet_ip/transport.hpp"
 #include "transports/net/ipv4.hpp"
 #include "transports/panel/control_panel.hpp"
@@ -157,17 +158,52 @@ void plan_ethernet_ip(const Config& config, const Channels& channels, std::vecto
   plans.push_back(std::move(plan));
 }
 
+ethercat::BusOptions options_of(const EthercatSegmentConfig& segment, Time cycle) {
+  return {.interface = segment.interface,
+          .redundant_interface = segment.redundant_interface,
+          .cycle = cycle,
+          .dc = segment.dc,
+          .dc_shift = segment.dc_shift,
+          .watchdog = segment.watchdog,
+          .separate = segment.separate};
+}
+
+void plan_ethercat(const Config& config, const EthercatSegmentConfig& segment, const Channels& channels,
+                   std::vector<LoopPlan>& plans) {
+  LoopPlan plan;
+  LoopBus bus;
+  std::vector<ethercat::RobotPlace> places;
+  for (std::size_t i = 0; i < config.robots.size(); ++i) {
+    const RobotConfig& robot = config.robots[i];
+    if (robot.type != TransportType::kEthercat || robot.ethercat.interface != segment.interface) continue;
+    plan.cycle = robot.cycle;
+    places.push_back({.position = robot.ethercat.position, .alias = robot.ethercat.alias});
+    bus.robots.push_back({settings_of(robot, std::endian::little), channels[i].get()});
+    plan.robots.push_back({i, {}});
+  }
+  bus.transport = ethercat::make_transport(std::move(places), options_of(segment, plan.cycle));
+  try {
+    bus.transport->open(monotonic());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string("EtherCAT: ") + error.what());
+  }
+  for (LoopPlan::Robot& robot : plan.robots) robot.counters = bus.transport->counters();
+  plan.buses.push_back(std::move(bus));
+  plans.push_back(std::move(plan));
+}
+
 }  // namespace
 
 std::vector<LoopPlan> open_buses(const Config& config, const Channels& channels) {
   for (const RobotConfig& robot : config.robots) {
     if (is_available(robot.type)) continue;
     throw std::runtime_error(robot.name + ": transport type '" + std::string(to_string(robot.type)) +
-                             "' is not built yet; this version has 'builtin' and 'ethernet_ip'");
+                             "' is not built yet; this version has 'builtin', 'ethernet_ip' and 'ethercat'");
   }
   std::vector<LoopPlan> plans;
   plan_builtin(config, channels, plans);
   plan_ethernet_ip(config, channels, plans);
+  for (const EthercatSegmentConfig& segment : config.ethercat) plan_ethercat(config, segment, channels, plans);
   return plans;
 }
 

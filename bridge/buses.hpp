@@ -21,8 +21,9 @@ struct LoopPlan {
   std::vector<Robot> robots;
 };
 
-// Built-in robots with the same cycle share a thread; all EtherNet/IP robots are one bus with a thread of its own.
-// Throws std::runtime_error with a sentence for the user. `channels`: one per robot, in the order of the configuration.
+// Built-in robots with the same cycle share a thread; all EtherNet/IP robots are one bus with a thread of its own, and
+// so are the robots of an EtherCAT segment. Throws std::runtime_error with a sentence for the user. `channels`: one per
+// robot, in the order of the configuration.
 std::vector<LoopPlan> open_buses(const Config& config, const std::vector<std::unique_ptr<RobotChannel>>& channels);
 
 }  // namespace meca::bridge
