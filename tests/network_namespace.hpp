@@ -1,5 +1,5 @@
-// A network of its own for a test: cables between interfaces, as root or in a user namespace. Only the calling thread and
-// those that it starts from then on are in it.
+// A network of its own for a test: cables between interfaces, as root or in a user namespace. Only the calling thread
+// and those that it starts from then on are in it.
 #pragma once
 
 #include <fcntl.h>
@@ -34,8 +34,8 @@ class NetworkNamespace {
   bool ip(const std::string& words) const { return std::system(("ip " + words + " 2>/dev/null").c_str()) == 0; }
   // Two interfaces, one at each end of a cable, both up.
   void cable(const std::string& a, const std::string& b) const {
-    const bool laid = ip("link add " + a + " type veth peer name " + b) && ip("link set " + a + " up") &&
-                      ip("link set " + b + " up");
+    const bool laid =
+        ip("link add " + a + " type veth peer name " + b) && ip("link set " + a + " up") && ip("link set " + b + " up");
     if (!laid) throw std::runtime_error("no cable between " + a + " and " + b);
   }
 
