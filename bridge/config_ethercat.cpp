@@ -63,6 +63,10 @@ void check_use(const Section& segment, const EthercatSegmentConfig& config, cons
 void check_ring(const Section& segment, const EthercatSegmentConfig& config, const std::vector<RobotConfig>& robots) {
   const std::string& back = config.redundant_interface;
   if (back.empty()) return;
+  if (config.dc) {
+    segment.report().error(segment.mark("dc"), segment.path("dc"),
+                           "distributed clocks and a ring do not go together in this version; leave one of them out");
+  }
   if (back == config.interface) {
     segment.report().error(segment.mark("redundant_interface"), segment.path("redundant_interface"),
                            "'" + back + "' is the segment's interface already; a ring needs a second one");

@@ -74,6 +74,10 @@ void BusGroup::run_arrived(Stamp stamp) noexcept {
   }
 }
 
+Time BusGroup::deadline_shift() const noexcept {
+  return buses_.size() == 1 ? buses_.front().transport->deadline_shift() : Time{};
+}
+
 bool BusGroup::finished() const noexcept {
   return std::ranges::all_of(buses_, [](const Bus& bus) {
     return std::ranges::all_of(bus.robots, [](const Robot& robot) { return robot.cycle.finished(); });
@@ -192,6 +196,7 @@ void Loop::run(std::promise<std::vector<std::string>> ready) {
     group_.run(stamp(), ending);
     wakeup_.notify();
     pacer.done(monotonic());
+    pacer.shift(group_.deadline_shift());
     share_pace(pacer.facts());
   }
   group_.close(stamp());

@@ -42,6 +42,8 @@ class BusGroup {
   transports::Transport::Woke wait(Time deadline) noexcept;
   // Something arrived before the next round: steps the robots that it concerns, in place of that round's step.
   void run_arrived(Stamp stamp) noexcept;
+  // By how much the next deadline should move (see Transport::deadline_shift).
+  Time deadline_shift() const noexcept;
   // After kStop: every robot has stopped and every command has its end.
   bool finished() const noexcept;
 

@@ -47,6 +47,9 @@ class Pacer {
     deadline_ += missed * cycle_;
   }
 
+  // Moves the rhythm: a bus keeps step with a clock of its own.
+  void shift(Time by) noexcept { deadline_ += by; }
+
   const PaceFacts& facts() const noexcept { return facts_; }
 
  private:

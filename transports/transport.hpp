@@ -73,6 +73,10 @@ class Transport {
   enum class Woke : std::uint8_t { kCannotWait, kDeadline, kArrival };
   virtual Woke wait(Time) noexcept { return Woke::kCannotWait; }
 
+  // By how much the deadlines of the loop should move from the next one on: for a bus that keeps step with a clock of
+  // its own (EtherCAT's distributed clocks). Small against the cycle. Asked once a cycle, after exchange().
+  virtual Time deadline_shift() const noexcept { return {}; }
+
   // What stands in Exchange::counters; at most kMostCounters.
   virtual std::span<const CounterInfo> counters() const noexcept { return {}; }
 

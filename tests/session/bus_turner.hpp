@@ -50,6 +50,7 @@ class BusTurner {
     deadline_ = std::max(deadline_ + cycle_, net::monotonic());
     while (bus_->wait(deadline_) == Woke::kArrival) exchange();
     exchange();
+    deadline_ += bus_->deadline_shift();
   }
   bool until(const std::function<bool()>& condition) {
     const Time end = net::monotonic() + kPatience;

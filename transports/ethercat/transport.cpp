@@ -80,12 +80,13 @@ class Bus final : public transports::Transport {
   void open(Time now) override;
   void exchange(Time now, std::span<transports::Exchange> exchanges) noexcept override;
   Woke wait(Time deadline) noexcept override;
+  Time deadline_shift() const noexcept override { return shift_; }
   void close() noexcept override;
 
  private:
   struct Interface {
     net::RawEthernet socket;
-    Link link = Link::kNoCarrier;
+    std::optional<Link> link;  // as it was looked at last
   };
   struct Robot {
     bool fresh = false;  // inputs that no exchange() has handed over yet
@@ -107,7 +108,7 @@ class Bus final : public transports::Transport {
   net::Poller poller_;
   std::optional<Master> master_;
   transports::LinkDetail no_link_;  // empty while one of the ports is up
-  Time deadline_{}, next_look_{};
+  Time deadline_{}, next_look_{}, shift_{};
   bool woke_for_arrival_ = false;
   BusFacts facts_;
   std::array<std::byte, kLongestFrame> buffer_{};
@@ -152,12 +153,14 @@ void Bus::begin_cycle(Time now) noexcept {
   if (deadline_ != Time{}) facts_.wake_up.add(now - deadline_, now);
   master_->begin_cycle(now);
   send(now);
+  shift_ = master_->dc_phase_correction();
   if (now >= next_look_) look_at_links(now);
 }
 
 void Bus::send(Time now) noexcept {
   for (Bytes frame = master_->next_frame(now); !frame.empty(); frame = master_->next_frame(now)) {
-    for (Interface& port : ports_) {
+    const std::size_t ports = master_->on_both_ports() ? kPorts : 1;
+    for (Interface& port : std::span(ports_).first(ports)) {
       if (port.link == Link::kUp && !port.socket.send(frame)) ++facts_.failed_sends;
     }
   }
@@ -202,13 +205,12 @@ void Bus::look_at_links(Time now) noexcept {
     Interface& port = ports_[i];
     if (!port.socket) continue;
     const Link link = port.socket.link();
-    if ((link == Link::kUp) != (port.link == Link::kUp)) {
-      master_->link_changed(static_cast<Port>(i), link == Link::kUp, now);
-    }
+    const bool news = !port.link || (link == Link::kUp) != (port.link == Link::kUp);
+    if (news) master_->link_changed(static_cast<Port>(i), link == Link::kUp, now);
     port.link = link;
     up |= link == Link::kUp;
   }
-  no_link_ = up ? transports::LinkDetail{} : why_not(ports_[0].link, options_.interface);
+  no_link_ = up ? transports::LinkDetail{} : why_not(*ports_[0].link, options_.interface);
 }
 
 void Bus::fill(std::size_t robot, transports::Exchange& exchange, bool fresh) noexcept {

@@ -41,6 +41,7 @@ class ScriptedBus final : public transports::Transport {
     }
   }
   Woke wait(transports::Time) noexcept override { return seen_.woke; }
+  Time deadline_shift() const noexcept override { return 3us; }
   void close() noexcept override {
     seen_.closed = true;
     seen_.set_point_at_close = last_.motion_control.set_point;
@@ -130,6 +131,14 @@ TEST_F(BusGroupTest, OnlyABusOfItsOwnMayWaitInTheLoopsPlace) {
   buses.push_back(bus(seen_, {&arm2_}));
   BusGroup together(std::move(buses));
   EXPECT_EQ(together.wait(1ms), Woke::kCannotWait);
+}
+
+TEST_F(BusGroupTest, OnlyABusOfItsOwnMovesTheDeadlines) {
+  EXPECT_EQ(group({&arm1_}).deadline_shift(), 3us);
+  std::vector<LoopBus> buses;
+  buses.push_back(bus(seen_, {&arm1_}));
+  buses.push_back(bus(seen_, {&arm2_}));
+  EXPECT_EQ(BusGroup(std::move(buses)).deadline_shift(), 0us);
 }
 
 TEST_F(BusGroupTest, AFullRecordQueueCostsRecordsAndNeverReceipts) {

@@ -32,6 +32,16 @@ TEST(Pacer, DeadlinesThatAreOverAreCountedSkippedAndThePhaseStays) {
   EXPECT_EQ(pacer.deadline(), 4ms);
 }
 
+TEST(Pacer, ShiftsMoveTheRhythmForGood) {
+  Pacer pacer(1ms, 0ms);
+  pacer.done(100us);
+  pacer.shift(-10us);
+  EXPECT_EQ(pacer.deadline(), 990us);
+  pacer.done(1ms);
+  EXPECT_EQ(pacer.deadline(), 1990us);
+  EXPECT_EQ(pacer.facts().missed_cycles, 0U);
+}
+
 TEST(Pacer, LatenessIsThatOfTheLastSecond) {
   Pacer pacer(500ms, 0ms);
   const auto cycle = [&](Time late) {

@@ -249,7 +249,8 @@ realtime: {priority: 80, lock_memory: true, cpus: [2, 3]}
 ethernet_ip: {bind: 0.0.0.0, io_port: 2223, vendor_id: 4660, serial_number: 4294967295}
 ethercat:
   segments:
-    - {interface: eth1, redundant_interface: eth2, dc: true, dc_shift: 250us, watchdog: 50ms, separate: true}
+    - {interface: eth1, dc: true, dc_shift: 250us, watchdog: 50ms, separate: true}
+    - {interface: eth3, redundant_interface: eth2}
 robots:
   - name: arm_1-A
     transport: {type: builtin, product: R3, firmware: 9.3, serial_number: 4294967295, instant_homing: true, noise: false,
@@ -317,10 +318,10 @@ robots:
   EXPECT_EQ(c.robots[3].ethercat.alias, std::nullopt);
   EXPECT_EQ(c.robots[4].ethercat.alias, 65535);
   ASSERT_EQ(c.ethercat.size(), 2U);
-  EXPECT_EQ(c.ethercat[0].interface, "eth3");  // with the defaults
+  EXPECT_EQ(c.ethercat[0].interface, "eth3");  // as the robots name them
   EXPECT_EQ(c.ethercat[0].watchdog, 100ms);
+  EXPECT_EQ(c.ethercat[0].redundant_interface, "eth2");
   EXPECT_EQ(c.ethercat[1].interface, "eth1");
-  EXPECT_EQ(c.ethercat[1].redundant_interface, "eth2");
   EXPECT_TRUE(c.ethercat[1].dc);
   EXPECT_EQ(c.ethercat[1].dc_shift, 250us);
   EXPECT_EQ(c.ethercat[1].watchdog, 50ms);
