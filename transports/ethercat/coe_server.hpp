@@ -1,6 +1,6 @@
-// The CANopen server of a device: the payload of a mail in, the payload of the answer out; SDO transfers expedited, normal
-// and segmented in both directions, Complete Access, SDO information (ETG.1000.6, 5.6.2 and 5.6.3). A machine without
-// I/O; no allocation.
+// The CANopen server of a device: the payload of a mail in, the payload of the answer out; SDO transfers expedited,
+// normal and segmented in both directions, Complete Access, SDO information (ETG.1000.6, 5.6.2 and 5.6.3). A machine
+// without I/O; no allocation.
 #pragma once
 
 #include <array>
@@ -51,8 +51,8 @@ class CoeServer {
   std::size_t size_ = 0, at_ = 0;
   std::uint64_t aborts_ = 0;
 
-  std::uint16_t list_ = 0;          // of SDO information: which list is being sent
-  std::size_t list_at_ = 0;         // entries that were sent
+  std::uint16_t list_ = 0;   // of SDO information: which list is being sent
+  std::size_t list_at_ = 0;  // entries that were sent
   std::uint16_t fragments_left_ = 0;
 };
 

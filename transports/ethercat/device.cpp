@@ -23,12 +23,19 @@ EscSettings esc_settings(const DeviceSettings& settings) {
   return out;
 }
 
+// What the application knew before the ESC was without power.
+void forget(DeviceState& s) noexcept {
+  s.objects.reset();
+  s.transition.reset();
+  s.outputs_arrived = s.fresh = false;
+  s.output = {};
+  reset_mailbox(s);
+}
+
 }  // namespace
 
 DeviceState::DeviceState(const DeviceSettings& s)
-    : settings(s), esc(esc_settings(s)), objects(make_meca500_dictionary(s)) {
-  esc.set_al_status(static_cast<std::uint16_t>(AlState::kInit), 0);
-}
+    : settings(s), esc(esc_settings(s)), objects(make_meca500_dictionary(s)) {}
 
 Device::Device(const DeviceSettings& settings) : state_(std::make_unique<DeviceState>(settings)) {}
 Device::~Device() = default;
@@ -40,9 +47,12 @@ const Esc& Device::esc() const noexcept { return state_->esc; }
 
 void Device::tick(Time now) noexcept {
   DeviceState& s = *state_;
+  s.esc.faults() = {.working_counter = s.faults.working_counter, .lose_mailbox_reads = s.faults.lose_mailbox_replies};
+  if (s.esc.take_reset()) forget(s);
   s.esc.tick(now);
   s.objects.set_number({0x10F8, 0}, s.esc.system_time(now));
   serve_al_control(s, now);
+  watch_configuration(s);
   serve_process_data(s, now);
   advance_transition(s, now);
   serve_mailbox(s, now);
@@ -67,13 +77,7 @@ void Device::send_emergency(const Emergency& emergency) noexcept { queue_emergen
 void Device::power_cycle(Time now) noexcept {
   DeviceState& s = *state_;
   s.esc.power_cycle(now);
-  s.objects.reset();
-  s.transition.reset();
-  s.outputs_arrived = s.fresh = false;
-  s.output = {};
-  reset_mailbox(s);
-  s.esc.allow_process_data(false, false);
-  s.esc.set_al_status(static_cast<std::uint16_t>(AlState::kInit), 0);
+  forget(s);
 }
 
 DeviceFaults& Device::faults() noexcept { return state_->faults; }

@@ -73,10 +73,15 @@ void prepare_next(DeviceState& s, Time now) noexcept {
   if (s.mailbox.emergency_count > 0) prepare_emergency(s, now);
 }
 
+bool is_full(const Esc& esc, unsigned sync_manager) noexcept {
+  constexpr std::uint16_t kStatus = 5;
+  constexpr std::uint8_t kFull = 0x08;
+  return (esc.peek(reg::sync_manager(sync_manager) + kStatus) & kFull) != 0;
+}
+
 // A master that has not read the last answer and writes the next mail has lost its place.
 void judge(DeviceState& s) noexcept {
-  constexpr std::uint8_t kFull = 0x08;
-  const bool written = (s.esc.peek(reg::sync_manager(0) + 5) & kFull) != 0;
+  const bool written = is_full(s.esc, 0);
   if (written && !s.mailbox.blamed) ++s.counters.strict;
   s.mailbox.blamed = written;
 }
@@ -97,19 +102,18 @@ void queue_emergency(DeviceState& s, const Emergency& emergency) noexcept {
 void serve_mailbox(DeviceState& s, Time now) noexcept {
   if (state_of(s) == AlState::kInit) return;
   MailboxState& box = s.mailbox;
-  if (s.esc.mail_fetched()) box.posted = false;
   if (s.esc.take_repeat_request()) {
-    if (box.reply_size > 0 && !box.waiting) box.posted = s.esc.post_mail(Bytes(box.reply).first(box.reply_size)) || box.posted;
+    if (box.reply_size > 0 && !box.waiting) s.esc.post_mail(Bytes(box.reply).first(box.reply_size));
     s.esc.acknowledge_repeat();
   }
-  if (box.posted) return judge(s);
+  if (is_full(s.esc, 1)) return judge(s);
+  box.blamed = false;
   if (!box.waiting) prepare_next(s, now);
   if (!box.waiting) {
     if (const auto memory = s.esc.take_mail()) answer(s, *memory, now);
   }
   if (box.waiting && now >= box.ready && s.esc.post_mail(Bytes(box.reply).first(box.reply_size))) {
     box.waiting = false;
-    box.posted = true;
   }
 }
 

@@ -20,10 +20,9 @@ struct Transition {
 struct MailboxState {
   std::array<std::byte, kMailboxSize> reply{};  // the last mail, also for a repetition
   std::size_t reply_size = 0;
-  bool waiting = false;  // the reply is not yet posted
-  Time ready{};          // then it is
-  bool posted = false;   // and not yet fetched
-  bool blamed = false;   // of a mail that was written while a reply was there
+  bool waiting = false;           // the reply is not yet posted
+  Time ready{};                   // then it is
+  bool blamed = false;            // of a mail that was written while a reply was there
   std::uint8_t counter = 0;       // of what we send
   std::uint8_t last_request = 0;  // counter of the last mail from the master
   std::array<Emergency, 4> emergencies{};
@@ -42,7 +41,7 @@ struct DeviceState {
   MailboxState mailbox;
 
   std::optional<Transition> transition;
-  bool outputs_arrived = false;  // since SAFEOP, and not so long ago that the watchdog ran out
+  bool outputs_arrived = false;    // since SAFEOP, and not so long ago that the watchdog ran out
   bool distributed_clock = false;  // SYNC0 was active on the way to SAFEOP
   std::uint32_t missed_sync = 0;   // SYNC0 cycles without outputs: up for each one, down for a good one
   Time next_sync{};
@@ -57,6 +56,7 @@ bool has_error(const DeviceState& s) noexcept;
 // ---- device_states.cpp: AL state machine
 void serve_al_control(DeviceState& s, Time now) noexcept;
 void advance_transition(DeviceState& s, Time now) noexcept;
+void watch_configuration(DeviceState& s) noexcept;  // falls when the sync managers are changed under it
 void al_error(DeviceState& s, AlState state, std::uint16_t code) noexcept;  // enters the state with the error bit
 
 // ---- device_mailbox.cpp

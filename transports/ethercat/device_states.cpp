@@ -41,8 +41,8 @@ std::uint16_t check_preop(DeviceState& s) noexcept {
   return kOk;
 }
 
-// [ROBOT]: without the assignment 0025h. inferred: the order of the checks, and that another order of the PDOs is refused
-// too: they are all fixed in the ESI.
+// [ROBOT]: without the assignment 0025h. inferred: the order of the checks, and that another order of the PDOs is
+// refused too: they are all fixed in the ESI.
 std::uint16_t check_safeop(DeviceState& s) noexcept {
   if (!s.objects.assigned(kRxPdoAssignment, rx_assignment())) return al::kOutputMapping;
   const bool safety = s.settings.layout != image::Layout::kFirmware9;
@@ -83,7 +83,8 @@ void enter(DeviceState& s, AlState to) noexcept {
     s.outputs_arrived = false;
     s.esc.take_outputs();  // of another time
     s.distributed_clock = s.esc.sync0_active();
-    s.objects.set_number({0x1C32, 2}, s.distributed_clock ? static_cast<std::uint64_t>(s.esc.last_sync0_cycle().count()) : 0);
+    s.objects.set_number({0x1C32, 2},
+                         s.distributed_clock ? static_cast<std::uint64_t>(s.esc.last_sync0_cycle().count()) : 0);
   }
   if (to == AlState::kOp) {
     s.missed_sync = 0;
@@ -156,6 +157,21 @@ void al_error(DeviceState& s, AlState state, std::uint16_t code) noexcept {
   if (state == AlState::kInit) return;  // no mailbox
   s.objects.set_number({0x1001, 0}, 0x10);
   queue_emergency(s, emergency_of(state, code));
+}
+
+// As the public slave stack SOES does. inferred: so does the robot.
+void watch_configuration(DeviceState& s) noexcept {
+  const AlState state = state_of(s);
+  const auto stands = [&s](unsigned n) { return is_laid_out(s.esc, n) && is_enabled(s.esc, n); };
+  if (state == AlState::kInit) return;
+  if (!stands(0) || !stands(1)) {
+    enter(s, AlState::kInit);
+    return refuse(s, AlState::kInit, al::kMailboxConfiguration);
+  }
+  if (state == AlState::kPreop || (stands(2) && stands(3))) return;
+  const std::uint16_t code = stands(2) ? al::kInputConfiguration : al::kOutputConfiguration;
+  enter(s, AlState::kPreop);
+  refuse(s, AlState::kPreop, code);
 }
 
 void serve_al_control(DeviceState& s, Time now) noexcept {

@@ -154,8 +154,8 @@ std::optional<SdoAbort> ObjectDictionary::upload(SdoAddress address, bool comple
   return std::nullopt;
 }
 
-std::optional<SdoAbort> ObjectDictionary::upload_all(const Object& object, std::uint8_t first,
-                                                     std::span<std::byte> to, std::size_t& size) const noexcept {
+std::optional<SdoAbort> ObjectDictionary::upload_all(const Object& object, std::uint8_t first, std::span<std::byte> to,
+                                                     std::size_t& size) const noexcept {
   if (object.code == ObjectCode::kVariable || first > 1) return SdoAbort::kNoCompleteAccess;
   const std::uint32_t last = is_assignment(object) ? number(object.entries.front()) : object.most_sub();
   const auto counts = [&](const Entry& entry) { return entry.sub >= first && entry.sub <= last; };

@@ -18,8 +18,15 @@ namespace meca::ethercat {
 struct DeviceSettings;
 
 enum class DataType : std::uint16_t {  // ETG.1020, base data types
-  kNone = 0, kBoolean = 0x01, kInteger8 = 0x02, kUnsigned8 = 0x05, kUnsigned16 = 0x06, kUnsigned32 = 0x07,
-  kReal32 = 0x08, kVisibleString = 0x09, kUnsigned64 = 0x1B
+  kNone = 0,
+  kBoolean = 0x01,
+  kInteger8 = 0x02,
+  kUnsigned8 = 0x05,
+  kUnsigned16 = 0x06,
+  kUnsigned32 = 0x07,
+  kReal32 = 0x08,
+  kVisibleString = 0x09,
+  kUnsigned64 = 0x1B
 };
 enum class ObjectCode : std::uint8_t { kVariable = 7, kArray = 8, kRecord = 9 };
 
@@ -61,9 +68,9 @@ class ObjectDictionary {
  public:
   // ---- Building. `value`: the entry's, as many bytes as it has.
   Entry stored(Entry entry, Bytes value);
-  Object& add(Object object);  // in any order of the indices, each once
+  Object& add(Object object);                      // in any order of the indices, each once
   Object* building(std::uint16_t index) noexcept;  // what was added, to add entries
-  void finish();               // what is stored now is what reset() comes back to
+  void finish();                                   // what is stored now is what reset() comes back to
 
   // ---- Use
   void reset() noexcept;  // as after power-on

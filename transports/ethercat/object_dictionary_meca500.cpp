@@ -16,7 +16,8 @@ using image::Layout;
 
 // Complex data types of SDO information (ETG.1020); 0 for those of the vendor.
 constexpr std::uint16_t kPdoMappingType = 0x0021, kIdentityType = 0x0023, kSyncManagerType = 0x0029;
-constexpr std::uint16_t kWriteInPreop = access::kRead | access::kWriteInPreop, kReadWrite = access::kRead | access::kWrite;
+constexpr std::uint16_t kWriteInPreop = access::kRead | access::kWriteInPreop,
+                        kReadWrite = access::kRead | access::kWrite;
 
 constexpr std::uint16_t bits_of_type(DataType type) noexcept {
   switch (type) {
@@ -57,9 +58,7 @@ constexpr DataType type_of(image::WireType type) noexcept {
   return DataType::kNone;
 }
 
-std::string numbered(unsigned sub) {
-  return std::string(FixedText<16>::format("SubIndex %03u", sub).view());
-}
+std::string numbered(unsigned sub) { return std::string(FixedText<16>::format("SubIndex %03u", sub).view()); }
 
 class Builder {
  public:
@@ -82,7 +81,10 @@ class Builder {
                std::uint16_t access = access::kRead) {
     std::array<std::byte, 8> bytes{};
     wire::Writer(bytes).u64(value);
-    Entry entry{.sub = static_cast<std::uint8_t>(sub), .type = type, .bits = bits_of_type(type), .access = access,
+    Entry entry{.sub = static_cast<std::uint8_t>(sub),
+                .type = type,
+                .bits = bits_of_type(type),
+                .access = access,
                 .name = std::move(name)};
     return out_.stored(entry, Bytes(bytes).first(entry.bytes()));
   }
@@ -95,12 +97,15 @@ class Builder {
 
   void variable(std::uint16_t index, DataType type, std::uint64_t value, std::string name,
                 std::uint16_t access = access::kRead) {
-    out_.add({index, ObjectCode::kVariable, static_cast<std::uint16_t>(type), name,
-              {number(0, type, value, name, access)}});
+    out_.add(
+        {index, ObjectCode::kVariable, static_cast<std::uint16_t>(type), name, {number(0, type, value, name, access)}});
   }
   void string(std::uint16_t index, std::string_view value, std::string name) {
     Entry entry{.type = DataType::kVisibleString, .bits = static_cast<std::uint16_t>(8 * value.size()), .name = name};
-    out_.add({index, ObjectCode::kVariable, static_cast<std::uint16_t>(DataType::kVisibleString), name,
+    out_.add({index,
+              ObjectCode::kVariable,
+              static_cast<std::uint16_t>(DataType::kVisibleString),
+              name,
               {out_.stored(std::move(entry), std::as_bytes(std::span(value)))}});
   }
 
@@ -110,12 +115,18 @@ class Builder {
     string(0x1008, "Meca500", "Device name");
     string(0x1009, "3", "Hardware version");
     string(0x100A, settings_.firmware, "Software version");
-    out_.add({0x1018, ObjectCode::kRecord, kIdentityType, "Identity",
+    out_.add({0x1018,
+              ObjectCode::kRecord,
+              kIdentityType,
+              "Identity",
               {count(4), number(1, DataType::kUnsigned32, settings_.vendor, "Vendor ID"),
                number(2, DataType::kUnsigned32, settings_.product, "Product code"),
                number(3, DataType::kUnsigned32, settings_.revision, "Revision"),
                number(4, DataType::kUnsigned32, settings_.serial, "Serial number")}});
-    out_.add({0x10F1, ObjectCode::kRecord, 0, "Error Settings",
+    out_.add({0x10F1,
+              ObjectCode::kRecord,
+              0,
+              "Error Settings",
               {count(2), number(1, DataType::kUnsigned32, 1, "Local Error Reaction", kReadWrite | access::kSetting),
                number(2, DataType::kUnsigned16, 4, "Sync Error Counter Limit", kReadWrite | access::kSetting)}});
     variable(0x10F8, DataType::kUnsigned64, 0, "Timestamp Object", kReadWrite | access::kTxPdo);
@@ -126,8 +137,11 @@ class Builder {
     for (const auto& field : fields) {
       if (!field.layouts.has(settings_.layout) || field.robots != image::Robots::kMeca500) continue;
       const image::CoeObject coe = coe_object(field, settings_.layout);
-      Entry entry{.sub = coe.sub, .type = type_of(field.type), .bits = static_cast<std::uint16_t>(field.bits()),
-                  .access = access, .name = std::string(field.name)};
+      Entry entry{.sub = coe.sub,
+                  .type = type_of(field.type),
+                  .bits = static_cast<std::uint16_t>(field.bits()),
+                  .access = access,
+                  .name = std::string(field.name)};
       entry.home = home;
       entry.first_bit = field.first_bit();
       if (entry.type == DataType::kBoolean) entry.most = 1;
@@ -159,7 +173,10 @@ class Builder {
 
   // A robot that was just switched on [ROBOT]: the counts say 9 and 11, but 1C12h:01 is 0. inferred: so are the others.
   void assignment(std::uint16_t index, std::string name, std::span<const std::uint16_t> pdos, std::size_t fresh_count) {
-    Object object{index, ObjectCode::kArray, static_cast<std::uint16_t>(DataType::kUnsigned16), std::move(name),
+    Object object{index,
+                  ObjectCode::kArray,
+                  static_cast<std::uint16_t>(DataType::kUnsigned16),
+                  std::move(name),
                   {count(settings_.assigned ? pdos.size() : fresh_count, kWriteInPreop | access::kSetting)}};
     for (unsigned i = 0; i < pdos.size(); ++i) {
       object.entries.push_back(number(i + 1, DataType::kUnsigned16, settings_.assigned ? pdos[i] : 0, numbered(i + 1),
@@ -169,8 +186,8 @@ class Builder {
   }
 
   void communication() {
-    Object types{0x1C00, ObjectCode::kArray, static_cast<std::uint16_t>(DataType::kUnsigned8), "Sync manager type",
-                 {count(4)}};
+    Object types{
+        0x1C00, ObjectCode::kArray, static_cast<std::uint16_t>(DataType::kUnsigned8), "Sync manager type", {count(4)}};
     constexpr std::array<std::uint8_t, 4> kTypes{1, 2, 3, 4}, kOldTypes{2, 1, 3, 4};
     for (unsigned i = 0; i < 4; ++i) {
       types.entries.push_back(number(i + 1, DataType::kUnsigned8,
@@ -191,7 +208,10 @@ class Builder {
       return entry;
     };
     constexpr std::uint32_t kMostType = 0x22;  // synchronous with SM2; inferred: as far as the check goes
-    out_.add({index, ObjectCode::kRecord, kSyncManagerType, std::move(name),
+    out_.add({index,
+              ObjectCode::kRecord,
+              kSyncManagerType,
+              std::move(name),
               {count(32), setting(number(1, DataType::kUnsigned16, type, "Synchronization Type"), kMostType),
                number(2, DataType::kUnsigned32, 0, "Cycle Time"), hole(3, 32),
                number(4, DataType::kUnsigned16, kTypesSupported, "Synchronization Types supported"),
@@ -212,13 +232,17 @@ class Builder {
       entry.most = 2;
       return entry;
     };
-    out_.add({0x8000, ObjectCode::kRecord, 0, "Communication Mode", {count(2), port(1, "Port In"), port(2, "Port Out")}});
+    out_.add(
+        {0x8000, ObjectCode::kRecord, 0, "Communication Mode", {count(2), port(1, "Port In"), port(2, "Port Out")}});
     array(0xA000, "setDbg", std::array<std::uint32_t, 6>{1, 3}, kReadWrite);
     variable(0xAF00, DataType::kInteger8, 0, "State");
     array(0xAFFF, "Internal Status", std::array<std::uint32_t, 10>{}, access::kRead | access::kTxPdo);
   }
   void array(std::uint16_t index, std::string name, const auto& values, std::uint16_t access) {
-    Object object{index, ObjectCode::kArray, static_cast<std::uint16_t>(DataType::kUnsigned32), std::move(name),
+    Object object{index,
+                  ObjectCode::kArray,
+                  static_cast<std::uint16_t>(DataType::kUnsigned32),
+                  std::move(name),
                   {count(values.size())}};
     for (unsigned i = 0; i < values.size(); ++i) {
       object.entries.push_back(number(i + 1, DataType::kUnsigned32, values[i], numbered(i + 1), access));

@@ -18,7 +18,8 @@ std::vector<std::byte> busy_frame() {
   std::array<std::byte, kLongestFrame> buffer{};
   FrameWriter writer(buffer, DeviceRig::kMaster);
   writer.add(Command::kLrw, 1, 0, kOutputSize + kInputSize);
-  const auto mail = writer.add(Command::kFpwr, 2, address_of(DeviceRig::kAddress, kSyncManagers[0].start), kMailboxSize);
+  const auto mail =
+      writer.add(Command::kFpwr, 2, address_of(DeviceRig::kAddress, kSyncManagers[0].start), kMailboxSize);
   const auto request = bytes("0A 00 00 00 00 03 00 20 50 11 1A 00 00 00 00 00");
   std::ranges::copy(request, mail.begin());
   writer.add(Command::kFprd, 3, address_of(DeviceRig::kAddress, kSyncManagers[1].start), kMailboxSize);
@@ -37,7 +38,8 @@ TEST(DeviceAllocation, NeverHappensAfterConstruction) {
   const auto before = test::allocations;
   for (int i = 0; i < 1000; ++i, robot.now += 1ms) {
     std::ranges::copy(request, frame.begin());
-    robot.chain.process(Chain::Side::kPrimary, frame, robot.now);
+    DatagramWalk<std::byte> walk(frame);
+    while (auto datagram = walk.next()) robot.device.esc().process(*datagram, robot.now);
     robot.device.set_input(input);
     robot.device.tick(robot.now);
     robot.device.take_fresh();

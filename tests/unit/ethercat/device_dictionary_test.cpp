@@ -104,7 +104,7 @@ TEST(DeviceDictionary, HasTheCheckpointsOfEachFirmware) {
 
 TEST(DeviceDictionary, LeavesOutWhatOnlyOtherRobotsHave) {
   CoeRig robot;
-  EXPECT_EQ(robot.upload(0x6065, 2), "00");                // EStop
+  EXPECT_EQ(robot.upload(0x6065, 2), "00");              // EStop
   EXPECT_EQ(robot.upload(0x6065, 3), "abort 06090011");  // PStop1
   EXPECT_EQ(robot.upload(0x6065, 0, true), "19 00 00 00");
 }

@@ -87,7 +87,8 @@ TEST(DeviceMailbox, KeepsTheNextMailUntilTheAnswerIsRead) {
 TEST(DeviceMailbox, KnowsCoeOnly) {
   DeviceRig robot;
   robot.to_preop();
-  for (const auto type : {MailboxType::kAoe, MailboxType::kEoe, MailboxType::kFoe, MailboxType::kSoe, MailboxType::kVoe}) {
+  for (const auto type :
+       {MailboxType::kAoe, MailboxType::kEoe, MailboxType::kFoe, MailboxType::kSoe, MailboxType::kVoe}) {
     robot.post("00 00", std::nullopt, type);
     robot.run(5ms);
     EXPECT_THAT(robot.fetch(), testing::EndsWith(": 01 00 02 00"));

@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "tests/unit/ethercat/device_coe_rig.hpp"
-#include "transports/ethercat/chain.hpp"
+#include "transports/ethercat/frame.hpp"
 
 namespace meca::ethercat::device_test {
 
@@ -28,12 +28,9 @@ struct DeviceRig {
     std::array<std::byte, kLongestFrame> buffer{};
     FrameWriter writer(buffer, kMaster);
     std::ranges::copy(data, writer.add(command, 1, address, data.size()).begin());
-    std::array<std::byte, kLongestFrame> frame{};
-    const Bytes out = writer.finish();
-    std::ranges::copy(out, frame.begin());
-    if (!chain.process(Chain::Side::kPrimary, std::span(frame).first(out.size()), now)) return {};
-    const auto reply = DatagramWalk<const std::byte>(Bytes(frame).first(out.size())).next();
-    return {{reply->data().begin(), reply->data().end()}, reply->working_counter()};
+    const auto datagram = DatagramWalk<std::byte>(std::span(buffer).first(writer.finish().size())).next();
+    device.esc().process(*datagram, now);
+    return {{datagram->data().begin(), datagram->data().end()}, datagram->working_counter()};
   }
 
   // ---- Registers; what is returned is the working counter, or the bytes.
@@ -82,6 +79,12 @@ struct DeviceRig {
     return last_cycle.working_counter;
   }
 
+  // Start, length and control can be written only while a sync manager is off.
+  void set_sync_manager(unsigned n, std::string_view setting) {
+    write(reg::sync_manager(n) + 6, "00");
+    write(reg::sync_manager(n), setting);
+  }
+
   // ---- What a master does on the way up
   void set_up_mailbox() {
     for (unsigned n = 0; n < 2; ++n) write(reg::sync_manager(n), sync_manager_bytes(n, true));
@@ -95,9 +98,11 @@ struct DeviceRig {
   void assign() {
     const bool safety = device_has_safety;
     sdo("00 20 31 12 1C 00 14 00 00 00 09 00 00 16 01 16 02 16 10 16 11 16 20 16 21 16 22 16 23 16");
-    sdo(safety ? "00 20 31 13 1C 00 1C 00 00 00 0D 00 00 1A 01 1A 02 1A 03 1A 08 1A 09 1A 0A 1A 10 1A 11 1A 20 1A 21 1A 22 "
+    sdo(safety ? "00 20 31 13 1C 00 1C 00 00 00 0D 00 00 1A 01 1A 02 1A 03 1A 08 1A 09 1A 0A 1A 10 1A 11 1A 20 1A 21 "
+                 "1A 22 "
                  "1A 23 1A"
-               : "00 20 31 13 1C 00 1A 00 00 00 0C 00 00 1A 01 1A 02 1A 03 1A 08 1A 09 1A 0A 1A 10 1A 20 1A 21 1A 22 1A 23 "
+               : "00 20 31 13 1C 00 1A 00 00 00 0C 00 00 1A 01 1A 02 1A 03 1A 08 1A 09 1A 0A 1A 10 1A 20 1A 21 1A 22 "
+                 "1A 23 "
                  "1A");
   }
   void to_preop() {
@@ -135,22 +140,24 @@ struct DeviceRig {
   }
   // What lies in the mailbox: "type counter: payload", or "empty".
   std::string fetch() {
-    const Answer answer = exchange(Command::kFprd, address_of(kAddress, kSyncManagers[1].start),
-                                   std::vector<std::byte>(kMailboxSize));
+    const Answer answer =
+        exchange(Command::kFprd, address_of(kAddress, kSyncManagers[1].start), std::vector<std::byte>(kMailboxSize));
     if (answer.working_counter == 0) return "empty";
     const auto mail = parse_mail(answer.data);
     return std::to_string(mail->header.type) + " " + std::to_string(mail->header.counter) + ": " + hex(mail->payload);
   }
-  // Asks and waits for the answer; its payload.
+  // Asks and waits for the answer; its payload. Emergencies are passed over.
   std::string sdo(std::string_view payload) {
     post(payload);
-    run(5ms);
-    return fetch().substr(5);
+    while (true) {
+      run(5ms);
+      const std::string mail = fetch();
+      if (mail.substr(5, 5) != "00 10") return mail.substr(5);
+    }
   }
 
   Time now = 1s;
   Device device;
-  Chain chain{{&device}};
   bool device_has_safety = true;
   std::uint8_t counter = 0;
   Answer last_cycle;

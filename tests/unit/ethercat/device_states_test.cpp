@@ -82,15 +82,15 @@ TEST(DeviceStates, LeaveAnErrorWithInitToo) {
 TEST(DeviceStates, NeedTheMailboxForPreop) {
   DeviceRig robot;
   EXPECT_EQ(robot.ask(0x02), "INIT+0016") << "no sync manager";
-  robot.write(reg::sync_manager(0), "00 10 80 00 26 00 01 00");
+  robot.set_sync_manager(0, "00 10 80 00 26 00 01 00");
   EXPECT_EQ(robot.ask(0x12), "INIT+0016") << "only one";
-  robot.write(reg::sync_manager(1), "80 10 40 00 22 00 01 00");
+  robot.set_sync_manager(1, "80 10 40 00 22 00 01 00");
   EXPECT_EQ(robot.ask(0x12), "INIT+0016") << "64 bytes";
-  robot.write(reg::sync_manager(1), "80 10 80 00 26 00 01 00");
+  robot.set_sync_manager(1, "80 10 80 00 26 00 01 00");
   EXPECT_EQ(robot.ask(0x12), "INIT+0016") << "the wrong direction";
-  robot.write(reg::sync_manager(1), "80 10 80 00 22 00 00 00");
+  robot.set_sync_manager(1, "80 10 80 00 22 00 00 00");
   EXPECT_EQ(robot.ask(0x12), "INIT+0016") << "not enabled";
-  robot.write(reg::sync_manager(1), "80 10 80 00 22 00 01 00");
+  robot.set_sync_manager(1, "80 10 80 00 22 00 01 00");
   EXPECT_EQ(robot.ask(0x12), "PREOP");
 }
 
@@ -112,9 +112,7 @@ TEST(DeviceStates, NeedTheAssignmentForSafeop) {
   robot.set_up_process_data();
   EXPECT_EQ(robot.ask(0x04), "PREOP+0025");
   robot.sdo("00 20 31 12 1C 00 14 00 00 00 09 00 00 16 01 16 02 16 10 16 11 16 20 16 21 16 22 16 23 16");
-  EXPECT_EQ(robot.fetch().substr(0, 1), "3");  // the emergency
   EXPECT_EQ(robot.ask(0x14), "PREOP+0024");
-  robot.fetch();
   robot.assign();
   EXPECT_EQ(robot.ask(0x14), "SAFEOP");
 }
@@ -125,7 +123,6 @@ TEST(DeviceStates, RefuseTheSafetyMappingOnFirmware9) {
   robot.set_up_process_data();
   robot.assign();
   EXPECT_EQ(robot.ask(0x04), "PREOP+0024");
-  robot.fetch();
   robot.device_has_safety = false;
   robot.assign();
   EXPECT_EQ(robot.ask(0x14), "SAFEOP");
@@ -136,14 +133,14 @@ TEST(DeviceStates, NeedTheSyncManagersForSafeop) {
   robot.to_preop();
   robot.assign();
   EXPECT_EQ(robot.ask(0x04), "PREOP+001D") << "no outputs";
-  robot.write(reg::sync_manager(2), "00 11 24 00 64 00 01 00");
+  robot.set_sync_manager(2, "00 11 24 00 64 00 01 00");
   EXPECT_EQ(robot.ask(0x14), "PREOP+001D") << "36 bytes";
-  robot.write(reg::sync_manager(2), sync_manager_bytes(2, true));
-  robot.write(reg::sync_manager(3), "00 14 84 00 20 00 01 00");
+  robot.set_sync_manager(2, "00 11 3C 00 64 00 01 00");
+  robot.set_sync_manager(3, "00 14 84 00 20 00 01 00");
   EXPECT_EQ(robot.ask(0x14), "PREOP+001E") << "132 bytes";
-  robot.write(reg::sync_manager(3), sync_manager_bytes(3, false));
+  robot.set_sync_manager(3, "00 14 FC 00 20 00 00 00");
   EXPECT_EQ(robot.ask(0x14), "PREOP+0017") << "not enabled";
-  robot.write(reg::sync_manager(3), sync_manager_bytes(3, true));
+  robot.set_sync_manager(3, "00 14 FC 00 20 00 01 00");
   EXPECT_EQ(robot.ask(0x14), "SAFEOP");
 }
 
@@ -187,6 +184,17 @@ TEST(DeviceStates, FallToSafeopWithAnErrorOfTheRobot) {
   EXPECT_EQ(robot.ask(0x14), "SAFEOP");
   robot.device.raise_al_error(0x0020, robot.now);
   EXPECT_EQ(robot.al(), "SAFEOP+0020");
+}
+
+TEST(DeviceStates, FallWhenTheSyncManagersAreChangedUnderThem) {
+  DeviceRig robot;
+  robot.to_op();
+  robot.set_sync_manager(2, "00 11 3C 00 64 00 00 00");
+  robot.run(2ms);
+  EXPECT_EQ(robot.al(), "PREOP+001D");
+  robot.set_sync_manager(0, "00 10 80 00 26 00 00 00");
+  robot.run(2ms);
+  EXPECT_EQ(robot.al(), "INIT+0016");
 }
 
 TEST(DeviceStates, BeginAnewAfterPowerIsBack) {
