@@ -41,8 +41,8 @@ void EscState::compare_system_time(Bytes received, Time now) noexcept {
   for (std::size_t i = received.size(); i-- > 0;) other = other << 8 | std::to_integer<std::uint64_t>(received[i]);
   other += u32(reg::kDcDelay);
   const std::uint64_t difference = system_time(now) - other;
-  const std::int64_t ahead = received.size() == 8 ? static_cast<std::int64_t>(difference)
-                                                  : static_cast<std::int32_t>(difference & 0xFFFFFFFF);
+  const std::int64_t ahead =
+      received.size() == 8 ? static_cast<std::int64_t>(difference) : static_cast<std::int32_t>(difference & 0xFFFFFFFF);
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
   const std::int64_t bounded = std::clamp(ahead, -kMost, kMost);
   mean_difference += (bounded - mean_difference) / (std::int64_t{1} << (u8(reg::kDcFilterDepths) & 0x0F));

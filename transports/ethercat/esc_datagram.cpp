@@ -1,4 +1,5 @@
-// What each command does with a datagram that passes (ETG.1000.4, 5.4): who is meant, what is exchanged, what is counted.
+// What each command does with a datagram that passes (ETG.1000.4, 5.4): who is meant, what is exchanged, what is
+// counted.
 #include "transports/ethercat/esc_state.hpp"
 
 namespace meca::ethercat {
@@ -13,21 +14,21 @@ struct Meaning {
 };
 
 constexpr std::array<Meaning, kCommands> kMeanings{{
-    {Addressing::kNobody, false, false},         // NOP
-    {Addressing::kPosition, true, false},        // APRD
-    {Addressing::kPosition, false, true},        // APWR
-    {Addressing::kPosition, true, true},         // APRW
-    {Addressing::kStation, true, false},         // FPRD
-    {Addressing::kStation, false, true},         // FPWR
-    {Addressing::kStation, true, true},          // FPRW
-    {Addressing::kEverybody, true, false},       // BRD
-    {Addressing::kEverybody, false, true},       // BWR
-    {Addressing::kEverybody, true, true},        // BRW
-    {Addressing::kLogical, true, false},         // LRD
-    {Addressing::kLogical, false, true},         // LWR
-    {Addressing::kLogical, true, true},          // LRW
-    {Addressing::kPosition, true, true, true},   // ARMW
-    {Addressing::kStation, true, true, true},    // FRMW
+    {Addressing::kNobody, false, false},        // NOP
+    {Addressing::kPosition, true, false},       // APRD
+    {Addressing::kPosition, false, true},       // APWR
+    {Addressing::kPosition, true, true},        // APRW
+    {Addressing::kStation, true, false},        // FPRD
+    {Addressing::kStation, false, true},        // FPWR
+    {Addressing::kStation, true, true},         // FPRW
+    {Addressing::kEverybody, true, false},      // BRD
+    {Addressing::kEverybody, false, true},      // BWR
+    {Addressing::kEverybody, true, true},       // BRW
+    {Addressing::kLogical, true, false},        // LRD
+    {Addressing::kLogical, false, true},        // LWR
+    {Addressing::kLogical, true, true},         // LRW
+    {Addressing::kPosition, true, true, true},  // ARMW
+    {Addressing::kStation, true, true, true},   // FRMW
 }};
 
 constexpr std::uint16_t kFeatureNoReadWrite = 0x0400;  // no BRW, APRW, FPRW

@@ -57,8 +57,7 @@ bool read_bits(EscState& s, const Fmmu& f, const Overlap& part, std::uint32_t ad
   return any;
 }
 
-bool write_bits(EscState& s, const Fmmu& f, const Overlap& part, std::uint32_t address, Bytes data,
-                Time now) noexcept {
+bool write_bits(EscState& s, const Fmmu& f, const Overlap& part, std::uint32_t address, Bytes data, Time now) noexcept {
   bool any = false;
   for_each_byte(f, part, address, [&](std::uint32_t physical, auto pairs) {
     std::byte value{}, lanes{};
@@ -97,10 +96,9 @@ unsigned EscState::exchange_logical(std::uint32_t address, std::span<std::byte> 
     if (!writes || !f.active || !f.writes) continue;
     const Overlap part = overlap(f, address, data.size());
     if (part.empty()) continue;
-    has_written |= f.whole_bytes()
-                       ? write(static_cast<std::uint32_t>(f.physical + (part.from - f.logical)),
-                               data.subspan(part.from - address, part.to - part.from), std::byte{0xFF}, now)
-                       : write_bits(*this, f, part, address, data, now);
+    has_written |= f.whole_bytes() ? write(static_cast<std::uint32_t>(f.physical + (part.from - f.logical)),
+                                           data.subspan(part.from - address, part.to - part.from), std::byte{0xFF}, now)
+                                   : write_bits(*this, f, part, address, data, now);
   }
   for (const Fmmu& f : fmmus) {
     if (!reads || !f.active || !f.reads) continue;

@@ -77,8 +77,7 @@ bool EscState::write(std::uint32_t address, Bytes in, std::byte lanes, Time now)
         return write_guarded(n, at, in.subspan(offset, size), lanes, now);
       },
       [&](std::uint32_t at, std::size_t offset, std::size_t size) {
-        for (std::size_t i = 0; i < size; ++i)
-          memory[at + i] = (memory[at + i] & ~lanes) | (in[offset + i] & lanes);
+        for (std::size_t i = 0; i < size; ++i) memory[at + i] = (memory[at + i] & ~lanes) | (in[offset + i] & lanes);
       });
 }
 

@@ -20,17 +20,17 @@ constexpr WriteMask kWriteMasks[] = {
     {0x0200, 0x0201, 0xFF},                                                                          // event mask
     {0x0400, 0x0401, 0xFF}, {0x0410, 0x0411, 0xFF}, {0x0420, 0x0421, 0xFF},                          // watchdogs
     {0x0500, 0x0500, 0x03}, {0x0504, 0x050F, 0xFF},                                                  // SII
-    {0x0920, 0x092B, 0xFF},                                                     // system time offset and delay
-    {0x0930, 0x0930, 0xFF}, {0x0931, 0x0931, 0x7F}, {0x0934, 0x0935, 0x0F},     // control loop
-    {0x0980, 0x0980, 0x31}, {0x0981, 0x0981, 0xFF},                             // SYNC unit
-    {0x0990, 0x0997, 0xFF}, {0x09A0, 0x09A7, 0xFF}, {0x09A8, 0x09A9, 0x03},     // start, cycles, latches
-    {0x0F80, 0x0FFF, 0xFF},                                                     // user RAM
+    {0x0920, 0x092B, 0xFF},                                                  // system time offset and delay
+    {0x0930, 0x0930, 0xFF}, {0x0931, 0x0931, 0x7F}, {0x0934, 0x0935, 0x0F},  // control loop
+    {0x0980, 0x0980, 0x31}, {0x0981, 0x0981, 0xFF},                          // SYNC unit
+    {0x0990, 0x0997, 0xFF}, {0x09A0, 0x09A7, 0xFF}, {0x09A8, 0x09A9, 0x03},  // start, cycles, latches
+    {0x0F80, 0x0FFF, 0xFF},                                                  // user RAM
 };
 // Offsets in one FMMU and one sync manager.
 constexpr WriteMask kFmmuMasks[] = {{0x0, 0x5, 0xFF}, {0x6, 0x7, 0x07}, {0x8, 0x9, 0xFF},
                                     {0xA, 0xA, 0x07}, {0xB, 0xB, 0x03}, {0xC, 0xC, 0x01}};
-constexpr WriteMask kSyncManagerMasks[] = {{0, 3, 0xFF}, {kSmControl, kSmControl, 0x7F},
-                                           {kSmActivate, kSmActivate, kSmEnable | kSmRepeat}};
+constexpr WriteMask kSyncManagerMasks[] = {
+    {0, 3, 0xFF}, {kSmControl, kSmControl, 0x7F}, {kSmActivate, kSmActivate, kSmEnable | kSmRepeat}};
 
 constexpr std::array<std::uint8_t, kRegisters> make_masks() {
   std::array<std::uint8_t, kRegisters> masks{};
@@ -52,7 +52,7 @@ constexpr std::array<std::uint8_t, 3> kResetLetters = {'R', 'E', 'S'};
 struct CounterGroup {
   std::uint16_t from, size;
 };
-constexpr CounterGroup kCounterGroups[] = {{reg::kRxErrors, 0x0C},      // invalid frames, RX errors, forwarded errors
+constexpr CounterGroup kCounterGroups[] = {{reg::kRxErrors, 0x0C},  // invalid frames, RX errors, forwarded errors
                                            {reg::kProcessingErrors, 1},
                                            {reg::kPdiErrors, 1},
                                            {reg::kLostLinks, 4},
@@ -115,8 +115,7 @@ bool EscState::writable(std::uint32_t address) const noexcept {
     const std::uint32_t n = (address - reg::kSyncManager) / reg::kSyncManagerSize;
     return (address & 7) > kSmControl || !sync_managers[n].enabled;
   }
-  if (address >= reg::kSiiControl && address < reg::kSiiData + 8u)
-    return !sii_busy() && (u8(reg::kSiiOwner) & 1) == 0;
+  if (address >= reg::kSiiControl && address < reg::kSiiData + 8u) return !sii_busy() && (u8(reg::kSiiOwner) & 1) == 0;
   return true;
 }
 

@@ -70,7 +70,8 @@ void EscState::sii_finish() noexcept {
 // Words 0 to 7 configure the ESC. The alias is taken at power-on only, so that it does not change under a master.
 void EscState::sii_load(bool with_alias) noexcept {
   const Bytes image = settings.sii;
-  const bool right = image.size() >= kConfigured && sii_checksum(image.first(14)) == std::to_integer<std::uint8_t>(image[14]);
+  const bool right =
+      image.size() >= kConfigured && sii_checksum(image.first(14)) == std::to_integer<std::uint8_t>(image[14]);
   sii_errors = right ? 0 : kSiiChecksumError | kSiiNotLoaded;
   set_bits(reg::kDlStatus, 1, right);  // PDI operational
   if (right) {

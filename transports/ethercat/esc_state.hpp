@@ -29,11 +29,11 @@ struct SyncManagerChannel {
   std::uint32_t start = 0, length = 0;
   std::uint32_t end = 0;  // of what it guards: three buffers where it is buffered
   Mode mode = Mode::kBuffered;
-  bool ecat_writes = false;      // direction; the PDI writes otherwise
-  bool feeds_watchdog = false;   // control bit 6
-  bool enabled = false;          // by the master
-  bool locked = false;           // by the PDI: deactivated
-  bool fits = false;             // inside of the process RAM
+  bool ecat_writes = false;     // direction; the PDI writes otherwise
+  bool feeds_watchdog = false;  // control bit 6
+  bool enabled = false;         // by the master
+  bool locked = false;          // by the PDI: deactivated
+  bool fits = false;            // inside of the process RAM
   // Mailbox: one buffer, full or not. `open` (both modes): the first byte was accessed, the last one was not yet.
   bool open = false, full = false;
   // Three buffers: the newest whole one, the one that the reader has, the one that the writer fills.
