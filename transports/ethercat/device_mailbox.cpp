@@ -7,13 +7,12 @@
 namespace meca::ethercat {
 namespace {
 
-// The payload is written by `body` behind the header.
+// The address stays 0, as in the mails of every device that was captured.
 void prepare(DeviceState& s, MailboxType type, Bytes payload, Time ready) noexcept {
   MailboxState& box = s.mailbox;
   box.counter = next_mailbox_counter(box.counter);
   wire::Writer out(box.reply);
   write(out, MailboxHeader{.length = static_cast<std::uint16_t>(payload.size()),
-                           .address = s.esc.station_address(),
                            .type = static_cast<std::uint8_t>(type),
                            .counter = box.counter});
   out.bytes(payload);
