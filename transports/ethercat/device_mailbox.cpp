@@ -1,6 +1,7 @@
 // Mails in and out: one request at a time, counters, repetition, error replies, emergencies (ETG.1000.4, 6.7;
 // ETG.1000.6, 5.6).
 #include <algorithm>
+#include <utility>
 
 #include "transports/ethercat/device_state.hpp"
 
@@ -11,12 +12,13 @@ namespace {
 void prepare(DeviceState& s, MailboxType type, Bytes payload, Time ready) noexcept {
   MailboxState& box = s.mailbox;
   box.counter = next_mailbox_counter(box.counter);
-  wire::Writer out(box.reply);
+  box.before = box.reply;
+  wire::Writer out(box.reply.bytes);
   write(out, MailboxHeader{.length = static_cast<std::uint16_t>(payload.size()),
                            .type = static_cast<std::uint8_t>(type),
                            .counter = box.counter});
   out.bytes(payload);
-  box.reply_size = out.size();
+  box.reply.size = out.size();
   box.waiting = true;
   box.ready = ready;
 }
@@ -85,6 +87,14 @@ void judge(DeviceState& s) noexcept {
   s.mailbox.blamed = written;
 }
 
+// The last mail that was read once more. One that was not read meanwhile stays where it is, and the repetition follows.
+void repeat(DeviceState& s) noexcept {
+  MailboxState& box = s.mailbox;
+  box.again = box.before.size > 0 && (box.waiting || is_full(s.esc, 1));
+  if (!box.again && box.reply.size > 0) s.esc.post_mail(box.reply.view());
+  s.esc.acknowledge_repeat();
+}
+
 }  // namespace
 
 void reset_mailbox(DeviceState& s) noexcept {
@@ -101,17 +111,15 @@ void queue_emergency(DeviceState& s, const Emergency& emergency) noexcept {
 void serve_mailbox(DeviceState& s, Time now) noexcept {
   if (state_of(s) == AlState::kInit) return;
   MailboxState& box = s.mailbox;
-  if (s.esc.take_repeat_request()) {
-    if (box.reply_size > 0 && !box.waiting) s.esc.post_mail(Bytes(box.reply).first(box.reply_size));
-    s.esc.acknowledge_repeat();
-  }
+  if (s.esc.take_repeat_request()) repeat(s);
   if (is_full(s.esc, 1)) return judge(s);
   box.blamed = false;
+  if (std::exchange(box.again, false) && s.esc.post_mail(box.before.view())) return;
   if (!box.waiting) prepare_next(s, now);
   if (!box.waiting) {
     if (const auto memory = s.esc.take_mail()) answer(s, *memory, now);
   }
-  if (box.waiting && now >= box.ready && s.esc.post_mail(Bytes(box.reply).first(box.reply_size))) {
+  if (box.waiting && now >= box.ready && s.esc.post_mail(box.reply.view())) {
     box.waiting = false;
   }
 }

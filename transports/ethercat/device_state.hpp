@@ -17,9 +17,15 @@ struct Transition {
   Time give_up{};           // of waiting for outputs on the way to OP
 };
 
+struct OutgoingMail {
+  std::array<std::byte, kMailboxSize> bytes{};
+  std::size_t size = 0;  // 0: none
+  Bytes view() const noexcept { return Bytes(bytes).first(size); }
+};
+
 struct MailboxState {
-  std::array<std::byte, kMailboxSize> reply{};  // the last mail, also for a repetition
-  std::size_t reply_size = 0;
+  OutgoingMail reply, before;     // the last mail and the one before it, for a repetition
+  bool again = false;             // `before`, as soon as there is room
   bool waiting = false;           // the reply is not yet posted
   Time ready{};                   // then it is
   bool blamed = false;            // of a mail that was written while a reply was there

@@ -69,6 +69,33 @@ TEST(DeviceMailbox, PutsTheLastMailAgainOnRequest) {
   EXPECT_EQ(robot.fetch(), lost);
 }
 
+TEST(DeviceMailbox, PutsTheLostMailBehindOneThatCameMeanwhile) {
+  DeviceRig robot;
+  robot.to_preop();
+  robot.post(kHardwareVersion);
+  robot.run(5ms);
+  const std::string lost = robot.fetch();
+  robot.device.send_emergency({.code = 0x1234, .error_register = 1});
+  robot.run(2ms);
+  robot.write(reg::sync_manager(1) + 6, "03");
+  robot.run(2ms);
+  EXPECT_EQ(robot.read(reg::sync_manager(1) + 7, 1), "02");
+  EXPECT_EQ(robot.fetch(), "3 2: 00 10 34 12 01 00 00 00 00 00");
+  robot.run(2ms);
+  EXPECT_EQ(robot.fetch(), lost);
+  robot.run(2ms);
+  EXPECT_EQ(robot.fetch(), "empty");
+}
+
+TEST(DeviceMailbox, RepeatsNothingBeforeTheFirstMail) {
+  DeviceRig robot;
+  robot.to_preop();
+  robot.write(reg::sync_manager(1) + 6, "03");
+  robot.run(2ms);
+  EXPECT_EQ(robot.read(reg::sync_manager(1) + 7, 1), "02");
+  EXPECT_EQ(robot.fetch(), "empty");
+}
+
 TEST(DeviceMailbox, KeepsTheNextMailUntilTheAnswerIsRead) {
   DeviceRig robot;
   robot.to_preop();
