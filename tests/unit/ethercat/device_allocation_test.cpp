@@ -1,6 +1,7 @@
 // The device shares the thread of the simulated robot: after construction it must not allocate.
 #include "tests/counted_new.hpp"
 #include "tests/unit/ethercat/device_rig.hpp"
+#include "transports/ethercat/chain.hpp"
 
 namespace meca::ethercat::device_test {
 namespace {
@@ -48,6 +49,33 @@ TEST(DeviceAllocation, NeverHappensAfterConstruction) {
   EXPECT_EQ(test::allocations, before);
   EXPECT_GT(robot.device.counters().mails, mails + 100);
   EXPECT_EQ(robot.al(), "SAFEOP+001A");
+}
+
+// Every command at every register, in a ring that is cut and healed and whose devices lose power.
+TEST(ChainAllocation, NeverHappensAfterConstruction) {
+  Device first(DeviceSettings{}), second(DeviceSettings{});
+  Chain chain({&first, &second});
+  chain.set_ring(true);
+  std::array<std::byte, kLongestFrame> buffer{};
+  Time now{};
+  std::size_t answers = 0;
+
+  const auto before = test::allocations;
+  for (unsigned i = 0; i < 0x3000; ++i, now += 100us) {
+    FrameWriter writer(buffer, DeviceRig::kMaster);
+    for (std::uint8_t command = 0; command < kCommands; ++command)
+      writer.add(static_cast<Command>(command), command, address_of(0, static_cast<std::uint16_t>(i)), 1 + i % 60);
+    const auto frame = std::span(buffer).first(writer.finish().size());
+    answers += chain.process(i % 2 == 0 ? Chain::Side::kPrimary : Chain::Side::kSecondary, frame, now).has_value();
+    if (i % 64 == 0) chain.cut(i / 64 % 3);
+    if (i % 64 == 32) chain.heal(i / 64 % 3);
+    if (i % 256 == 5) chain.set_powered(i / 256 % 2, false);
+    if (i % 256 == 9) chain.set_powered(i / 256 % 2, true);
+    first.tick(now);
+    second.tick(now);
+  }
+  EXPECT_EQ(test::allocations, before);
+  EXPECT_GT(answers, 0x2000u);
 }
 
 }  // namespace
