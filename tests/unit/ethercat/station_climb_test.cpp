@@ -2,25 +2,14 @@
 #include <gmock/gmock.h>
 
 #include "tests/unit/ethercat/station_rig.hpp"
+#include "tests/unit/ethercat/wire_golden.hpp"
 
 namespace meca::ethercat::station_test {
 namespace {
 
+using golden::from_hex;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-ByteVector hex(std::string_view digits) {
-  ByteVector out;
-  for (std::size_t i = 0; i + 1 < digits.size();) {
-    if (digits[i] == ' ') {
-      ++i;
-      continue;
-    }
-    out.push_back(static_cast<std::byte>(std::stoul(std::string(digits.substr(i, 2)), nullptr, 16)));
-    i += 2;
-  }
-  return out;
-}
 
 TEST(StationClimb, ReachesOpAndSaysNothingMore) {
   StationRig rig;
@@ -43,11 +32,11 @@ TEST(StationClimb, GoesThroughTheStatesOneByOne) {
 TEST(StationClimb, WritesSyncManagersAndFmmusAsEveryMasterDoes) {
   StationRig rig;
   ASSERT_TRUE(rig.climbs());
-  EXPECT_EQ(rig.device.memory(0x0800, 5), hex("00 10 80 00 26"));
-  EXPECT_EQ(rig.device.memory(0x0810, 8), hex("00 11 3C 00 64 00 01 00"));
-  EXPECT_EQ(rig.device.memory(0x0818, 8), hex("00 14 FC 00 20 00 01 00"));
-  EXPECT_EQ(rig.device.memory(0x0600, 16), hex("00 00 01 00 3C 00 00 07 00 11 00 02 01 00 00 00"));
-  EXPECT_EQ(rig.device.memory(0x0610, 16), hex("00 00 02 00 FC 00 00 07 00 14 00 01 01 00 00 00"));
+  EXPECT_EQ(rig.device.memory(0x0800, 5), from_hex("00 10 80 00 26"));
+  EXPECT_EQ(rig.device.memory(0x0810, 8), from_hex("00 11 3C 00 64 00 01 00"));
+  EXPECT_EQ(rig.device.memory(0x0818, 8), from_hex("00 14 FC 00 20 00 01 00"));
+  EXPECT_EQ(rig.device.memory(0x0600, 16), from_hex("00 00 01 00 3C 00 00 07 00 11 00 02 01 00 00 00"));
+  EXPECT_EQ(rig.device.memory(0x0610, 16), from_hex("00 00 02 00 FC 00 00 07 00 14 00 01 01 00 00 00"));
 }
 
 TEST(StationClimb, SetsTheWatchdogOfTheOutputs) {
@@ -55,8 +44,8 @@ TEST(StationClimb, SetsTheWatchdogOfTheOutputs) {
   settings.watchdog = 20ms;
   StationRig rig(settings);
   ASSERT_TRUE(rig.climbs());
-  EXPECT_EQ(rig.device.memory(0x0400, 2), hex("C2 09"));  // 2498: 100 us
-  EXPECT_EQ(rig.device.memory(0x0420, 2), hex("C8 00"));
+  EXPECT_EQ(rig.device.memory(0x0400, 2), from_hex("C2 09"));  // 2498: 100 us
+  EXPECT_EQ(rig.device.memory(0x0420, 2), from_hex("C8 00"));
 }
 
 TEST(StationClimb, LeavesTheWatchdogAsItIsWhenNoneIsAskedFor) {
@@ -64,7 +53,7 @@ TEST(StationClimb, LeavesTheWatchdogAsItIsWhenNoneIsAskedFor) {
   settings.watchdog = Time{};
   StationRig rig(settings);
   ASSERT_TRUE(rig.climbs());
-  EXPECT_EQ(rig.device.memory(0x0420, 2), hex("00 00"));
+  EXPECT_EQ(rig.device.memory(0x0420, 2), from_hex("00 00"));
 }
 
 TEST(StationClimb, ForgetsWhatAnotherMasterLeftInTheFmmus) {
@@ -78,7 +67,7 @@ TEST(StationClimb, ForgetsWhatAnotherMasterLeftInTheFmmus) {
 TEST(StationClimb, GivesTheSiiToTheRobotBeforePreop) {
   StationRig rig;
   ASSERT_TRUE(rig.climbs());
-  EXPECT_EQ(rig.device.memory(reg::kSiiOwner, 1), hex("01"));
+  EXPECT_EQ(rig.device.memory(reg::kSiiOwner, 1), from_hex("01"));
 }
 
 TEST(StationClimb, AcknowledgesAnErrorThatStandsBeforeItAsks) {
@@ -185,7 +174,7 @@ TEST(StationClock, StartsSync0AtAMultipleOfTheCycleAndShiftsIt) {
   ASSERT_TRUE(rig.run_until(Phase::kOperational)) << rig.trouble();
   EXPECT_EQ(rig.device.memory(0x0990, 8), le(1'102'000'000 + 300'000, 8));  // 100 ms later, rounded up
   EXPECT_EQ(rig.device.memory(0x09A0, 4), le(2'000'000, 4));
-  EXPECT_EQ(rig.device.memory(0x0980, 2), hex("00 03"));
+  EXPECT_EQ(rig.device.memory(0x0980, 2), from_hex("00 03"));
   EXPECT_EQ(rig.device.dictionary.number(0x1C32, 1), 2u);
   EXPECT_EQ(rig.device.dictionary.number(0x1C33, 1), 2u);
 }
@@ -199,7 +188,7 @@ TEST(StationClock, GoesOnWithClocksThatWereReadyBefore) {
 
 TEST(StationClock, IsSwitchedOffWithoutDc) {
   StationRig rig;
-  const auto left = hex("00 03");
+  const auto left = from_hex("00 03");
   rig.device.access({reg::kDcCyclicUnit, 2, true, left});
   ASSERT_TRUE(rig.climbs());
   EXPECT_EQ(rig.device.memory(reg::kDcCyclicUnit, 2), ByteVector(2));

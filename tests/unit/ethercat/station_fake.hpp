@@ -40,6 +40,7 @@ class Dictionary {
   bool complete_access = true;
   std::map<std::uint32_t, std::uint32_t> refuse_read, refuse_write;  // key() -> abort code
   std::vector<std::uint32_t> written;                                // key(), in order
+  std::vector<std::uint32_t> not_kept;                               // key(): written without effect
 
   static std::uint32_t key(std::uint16_t index, std::uint8_t sub) {
     return static_cast<std::uint32_t>(index) << 8 | sub;
@@ -93,7 +94,7 @@ class Dictionary {
     const std::uint32_t at = key(address.index, address.sub);
     written.push_back(at);
     if (const auto refused = refuse_write.find(at); refused != refuse_write.end()) return refused->second;
-    set(address.index, address.sub, {value.begin(), value.end()});
+    if (std::ranges::count(not_kept, at) == 0) set(address.index, address.sub, {value.begin(), value.end()});
     return 0;
   }
 

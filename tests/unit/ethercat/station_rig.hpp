@@ -42,6 +42,11 @@ class StationRig {
   Time now = 1s;
   bool process_data = true;
   bool rounds = true;  // the master looks at the AL status now and then
+  struct Spoil {       // what comes back of one access
+    std::size_t access, byte;
+    bool cut;
+  };
+  std::optional<Spoil> spoil;
   static constexpr SiiIdentity kIdentity{0, kMecademicVendor, kMeca500Product, 1, 7, 0x1000, 128, 0x1080, 128, 4, true};
 
   void find() { station.found(0x1001, kIdentity, now); }
@@ -64,8 +69,12 @@ class StationRig {
     kept.data = data;
     const auto loss = wire.passes(kept);
     if (loss == Wire::Loss::kRequest) return lost();
-    const auto answer = device.access(kept);
+    auto answer = device.access(kept);
     if (loss == Wire::Loss::kReply) return lost();
+    if (spoil && wire.count - 1 == spoil->access) {
+      if (spoil->cut) answer.data.resize(spoil->byte);
+      if (!spoil->cut) answer.data[spoil->byte] ^= std::byte{0xFF};
+    }
     station.answered(answer.working_counter, answer.data, now);
   }
   bool run_until(Phase phase, Time limit = 20s) {
