@@ -2,13 +2,10 @@
 // source of a test program includes it, and only one.
 #pragma once
 
-#include <cstdint>
 #include <cstdlib>
 #include <new>
 
-namespace meca::test {
-inline thread_local std::uint64_t allocations = 0;
-}
+#include "tests/allocations.hpp"
 
 // Not inlined, where GCC would see a free() that does not match the new it knows. The array forms end here too. The
 // nothrow form would as well, but AddressSanitizer brings one of its own, and googletest 1.16 uses it: freeing that
