@@ -189,8 +189,8 @@ void ChainScan::lost(const Purpose& purpose, Time now) noexcept {
     sii_moved(purpose.of);
     return next_step(now);
   }
-  // An address may have been written or not; another look tells.
-  if (step_ == Step::kAssign || ++probe.failures > kMostFailures) start();
+  // Asked again, also where an address was written: the master stops the scan when the chain moves meanwhile.
+  if (++probe.failures > kMostFailures) start();
 }
 
 void ChainScan::answered_reading(std::size_t item, std::uint16_t working_counter, Bytes data, Time now) noexcept {

@@ -1,9 +1,9 @@
-// Looks through the chain: counts the devices, knows those again that still have the station address it gave them, gives
-// the others one, and reads who they are. A machine without I/O and without clock that wants datagrams and takes answers.
-// No allocation after construction.
+// Looks through the chain: counts the devices, knows those again that still have the station address it gave them,
+// gives the others one, and reads who they are. A machine without I/O and without clock that wants datagrams and takes
+// answers. No allocation after construction.
 //
-// By position only what a device has under its address 0010h is read, and only a device that has none of ours is written
-// to. So a running device is never touched, whoever comes, goes or moves around it.
+// By position only what a device has under its address 0010h is read, and only a device that has none of ours is
+// written to. So a running device is never touched, whoever comes, goes or moves around it.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class ChainScan {
     std::uint16_t features = 0, dl_status = 0, alias = 0;
     bool identified = false;  // `identity` was read
     SiiIdentity identity{};
-    FixedText<127> trouble{}; // why it could not be read
-    std::uint32_t life = 0;   // another number for every address given: a power cycle makes another life of it
+    FixedText<127> trouble{};  // why it could not be read
+    std::uint32_t life = 0;    // another number for every address given: a power cycle makes another life of it
   };
 
   explicit ChainScan(Time sii_timeout);

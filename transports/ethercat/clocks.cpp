@@ -97,8 +97,8 @@ bool Clocks::add_to(InFlight& frame, Time now) noexcept {
     Clock& first = clocks_.front();
     if (first.asked) return false;
     latched_ = now;
-    first.asked = frame.add({Command::kBwr, address_of(0, reg::kDcReceiveTimes), 4, {},
-                             {Purpose::Kind::kClocks, generation_, 0}});
+    first.asked = frame.add(
+        {Command::kBwr, address_of(0, reg::kDcReceiveTimes), 4, {}, {Purpose::Kind::kClocks, generation_, 0}});
     return first.asked;
   }
   bool added = false;
@@ -114,7 +114,8 @@ bool Clocks::add_one(InFlight& frame, std::size_t item) noexcept {
     return frame.add({Command::kFprd, address_of(clock.address, ado), size, {}, purpose});
   };
   const auto write = [&](std::uint16_t ado, const auto& bytes) {
-    return frame.add({Command::kFpwr, address_of(clock.address, ado), static_cast<std::uint16_t>(bytes.size()), bytes, purpose});
+    return frame.add(
+        {Command::kFpwr, address_of(clock.address, ado), static_cast<std::uint16_t>(bytes.size()), bytes, purpose});
   };
   switch (step_) {
     case Step::kReadPorts:

@@ -1,7 +1,8 @@
 // Distributed clocks of the chain (spec/ethercat.md 5.9; ETG.1000.4, clause 6 "distributed clock"): propagation delays
 // from the times at which a frame passes the ports, offsets to the master's time, and the drift towards the reference,
 // which is the first device that has a clock. A machine without I/O that wants datagrams and takes answers; no
-// allocation after construction. Clocks that run already are not set again: only their delays are, when the chain changes.
+// allocation after construction. Clocks that run already are not set again: only their delays are, when the chain
+// changes.
 #pragma once
 
 #include <array>
@@ -45,7 +46,18 @@ class Clocks {
   std::optional<std::uint16_t> reference() const noexcept;
 
  private:
-  enum class Step : std::uint8_t { kIdle, kLatch, kReadPorts, kReadLocal, kDelay, kOffset, kSpeed, kFilter, kDrift, kReady };
+  enum class Step : std::uint8_t {
+    kIdle,
+    kLatch,
+    kReadPorts,
+    kReadLocal,
+    kDelay,
+    kOffset,
+    kSpeed,
+    kFilter,
+    kDrift,
+    kReady
+  };
   struct Clock {
     std::uint32_t life = 0;
     std::uint16_t address = 0, dl_status = 0;

@@ -11,7 +11,7 @@ namespace {
 
 using Phase = Station::Phase;
 constexpr Time kLeastSilence = std::chrono::milliseconds(100);
-constexpr unsigned kMissesToSay = 10;
+constexpr unsigned kMissesToSay = 10, kUnequalPauses = 4;
 
 StationSettings station_settings(const MasterSettings& settings, std::size_t robot) {
   StationSettings out = settings.station;
@@ -98,6 +98,8 @@ void MasterState::dispatch(const InFlight::Frame& frame, Bytes reply, Time now) 
 void MasterState::lost(const InFlight::Frame& frame, Time now) noexcept {
   if (frame.use == InFlight::Use::kCyclic) return;
   service_in_flight = false;
+  // What is lost at a regular beat is not to be met by it again and again.
+  next_service = now + settings.service_period * (++service_losses % kUnequalPauses);
   for (std::size_t i = 0; i < frame.count; ++i) service_lost(frame.datagrams[i].purpose, now);
 }
 
@@ -141,7 +143,9 @@ void Master::received(Port port, Bytes frame, Time now) noexcept {
   if (state.settings.redundant && counts_all && port == Port::kPrimary && arrival.frame->awaited > 1) {
     // Of a whole ring the frame of the primary port comes back at the other one; what comes back here passed nobody.
     DatagramWalk<const std::byte> walk(frame);
-    state.ring_open = walk.next()->working_counter() > 0;
+    const bool open = walk.next()->working_counter() > 0;
+    if (state.ring_open && !open) state.scan_wanted = true;  // who came new behind the break can be found now
+    state.ring_open = open;
   }
   if (arrival.verdict != InFlight::Verdict::kComplete) return;
   if (cyclic) {

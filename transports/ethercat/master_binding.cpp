@@ -45,8 +45,8 @@ const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) c
       found = &device;
     }
     if (found == nullptr)
-      why = Text::format("no robot with alias %u is there: %zu %s; check cable and power, and the alias in its SII", alias,
-                         devices.size(), devices.size() == 1 ? "device answers" : "devices answer");
+      why = Text::format("no robot with alias %u is there: %zu %s; check cable and power, and the alias in its SII",
+                         alias, devices.size(), devices.size() == 1 ? "device answers" : "devices answer");
     return found;
   }
   const unsigned position = robot.place.position;
@@ -63,10 +63,10 @@ const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) c
     return nullptr;
   }
   if (!is_meca500(id)) {
-    why = Text::format("position %u is vendor 0x%08X, product 0x%08X%s, not a Meca500 (vendor 0x%08X, product 0x%08X): "
-                       "it is left alone; check the order of the cables and the positions in the configuration",
-                       position, id.vendor, id.product, product_name(id.vendor, id.product), kMecademicVendor,
-                       kMeca500Product);
+    why = Text::format(
+        "position %u is vendor 0x%08X, product 0x%08X%s, not a Meca500 (vendor 0x%08X, product 0x%08X): "
+        "it is left alone; check the order of the cables and the positions in the configuration",
+        position, id.vendor, id.product, product_name(id.vendor, id.product), kMecademicVendor, kMeca500Product);
     return nullptr;
   }
   const auto wanted_by = std::ranges::find_if(

@@ -6,7 +6,8 @@
 namespace meca::ethercat {
 namespace {
 
-// A count of devices is believed when two cycles say the same; single frames may be cut short by a cable that is pulled.
+// A count of devices is believed when two cycles say the same; single frames may be cut short by a cable that is
+// pulled.
 constexpr unsigned kBelieved = 2;
 constexpr unsigned kMissesToAsk = 2;
 // An answer of the reference's clock is of use for the others once all are set.
@@ -36,11 +37,15 @@ Bytes MasterState::cyclic_frame(Time now) noexcept {
   if (!chain_state_added) {
     in_flight.add({Command::kBrd, address_of(0, reg::kAlStatus), 2, {}, {Purpose::Kind::kChainState, 0, 0}});
     if (const auto reference = clocks.reference())
-      in_flight.add({Command::kFrmw, address_of(*reference, reg::kDcSystemTime), kTimeSize, {},
+      in_flight.add({Command::kFrmw,
+                     address_of(*reference, reg::kDcSystemTime),
+                     kTimeSize,
+                     {},
                      {Purpose::Kind::kReferenceTime, 0, 0}});
     chain_state_added = true;
   }
-  while (next_robot < robots.size() && (!robots[next_robot].station.wants_process_data() || add_process_data(next_robot)))
+  while (next_robot < robots.size() &&
+         (!robots[next_robot].station.wants_process_data() || add_process_data(next_robot)))
     ++next_robot;
   cyclic_due = next_robot < robots.size();
   both_ports = true;
@@ -55,10 +60,10 @@ bool MasterState::add_process_data(std::size_t index) noexcept {
     return in_flight.add(
         {Command::kLrw, logical, kLogicalSize, robot.output, {Purpose::Kind::kProcessData, robot.generation, of}});
   if (in_flight.room() < kLogicalSize + kDatagramOverhead) return false;
-  return in_flight.add({Command::kLwr, logical, kOutputSize, robot.output,
-                        {Purpose::Kind::kOutputs, robot.generation, of}}) &&
-         in_flight.add({Command::kLrd, logical + kOutputSize, kInputSize, {},
-                        {Purpose::Kind::kInputs, robot.generation, of}});
+  return in_flight.add(
+             {Command::kLwr, logical, kOutputSize, robot.output, {Purpose::Kind::kOutputs, robot.generation, of}}) &&
+         in_flight.add(
+             {Command::kLrd, logical + kOutputSize, kInputSize, {}, {Purpose::Kind::kInputs, robot.generation, of}});
 }
 
 void MasterState::cyclic_reply(const InFlight::Frame& frame, const Purpose& purpose, std::uint16_t working_counter,
@@ -82,8 +87,8 @@ void MasterState::cyclic_reply(const InFlight::Frame& frame, const Purpose& purp
     robot.station.process_data_exchanged(now);
 }
 
-void MasterState::separate_reply(Robot& robot, const InFlight::Frame& frame, bool inputs,
-                                 std::uint16_t working_counter, Bytes data, Time now) noexcept {
+void MasterState::separate_reply(Robot& robot, const InFlight::Frame& frame, bool inputs, std::uint16_t working_counter,
+                                 Bytes data, Time now) noexcept {
   if (working_counter != kOneWay) return miss(robot, working_counter);
   (inputs ? robot.inputs_cycle : robot.outputs_cycle) = frame.cycle;
   if (!inputs) return;  // outputs stand before inputs in the same frame

@@ -83,12 +83,14 @@ void MasterState::add_robot(std::size_t index, Time now) noexcept {
     in_flight.add({access->write ? Command::kFpwr : Command::kFprd, address_of(address, access->address), access->size,
                    access->data, purpose(Purpose::Kind::kStation)});
   if (robot.errors.clear)
-    robot.errors.clear = !in_flight.add({Command::kFpwr, address_of(address, reg::kRxErrors), reg::kErrorCountersSize,
-                                         {}, purpose(Purpose::Kind::kClearErrorCounters)});
+    robot.errors.clear = !in_flight.add({Command::kFpwr,
+                                         address_of(address, reg::kRxErrors),
+                                         reg::kErrorCountersSize,
+                                         {},
+                                         purpose(Purpose::Kind::kClearErrorCounters)});
   else if (now >= robot.next_errors && read(reg::kRxErrors, reg::kErrorCountersSize, Purpose::Kind::kErrorCounters))
     robot.next_errors = now + kErrorsPeriod;
-  if (clocks.ready() && now >= robot.next_difference &&
-      read(reg::kDcDifference, 4, Purpose::Kind::kClockDifference))
+  if (clocks.ready() && now >= robot.next_difference && read(reg::kDcDifference, 4, Purpose::Kind::kClockDifference))
     robot.next_difference = now + kDifferencePeriod;
 }
 
@@ -133,9 +135,9 @@ void MasterState::error_counters_reply(Robot& robot, Bytes data) noexcept {
   // Of ports 0 and 1: invalid frames, receive errors; lost links.
   constexpr std::size_t kLinks = reg::kLostLinks - reg::kRxErrors;
   constexpr std::array<std::size_t, 6> kAt{0, 2, 1, 3, kLinks, kLinks + 1};
-  const std::array<std::uint32_t*, 6> sums{
-      &robot.counters.invalid_frames[0], &robot.counters.invalid_frames[1], &robot.counters.rx_errors[0],
-      &robot.counters.rx_errors[1],      &robot.counters.lost_links[0],     &robot.counters.lost_links[1]};
+  const std::array<std::uint32_t*, 6> sums{&robot.counters.invalid_frames[0], &robot.counters.invalid_frames[1],
+                                           &robot.counters.rx_errors[0],      &robot.counters.rx_errors[1],
+                                           &robot.counters.lost_links[0],     &robot.counters.lost_links[1]};
   ErrorCounterReading& reading = robot.errors;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const auto value = std::to_integer<std::uint8_t>(data[kAt[i]]);

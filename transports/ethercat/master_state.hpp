@@ -39,11 +39,11 @@ struct Robot {
   bool cannot_lrw = false;
   transports::LinkDetail trouble;  // of the chain
 
-  std::uint64_t input_cycle = 0;                                // that `input` was asked for in
-  unsigned misses = 0;                                          // of the working counter, in a row
-  std::uint16_t wrong_counter = 0;                              // the last of them
-  std::uint64_t inputs_cycle = 0, outputs_cycle = 0;            // separate datagrams that counted
-  unsigned silent = 0;                                          // questions for the AL status, in a row
+  std::uint64_t input_cycle = 0;                      // that `input` was asked for in
+  unsigned misses = 0;                                // of the working counter, in a row
+  std::uint16_t wrong_counter = 0;                    // the last of them
+  std::uint64_t inputs_cycle = 0, outputs_cycle = 0;  // separate datagrams that counted
+  unsigned silent = 0;                                // questions for the AL status, in a row
   bool al_due = false, was_operational = false;
   std::uint16_t al_status = 0;
   Time next_al{}, next_errors{}, next_difference{};
@@ -106,9 +106,9 @@ struct MasterState {
   std::uint64_t cycle = 0;
   bool cyclic_due = false, chain_state_added = false;
   std::size_t next_robot = 0;
-  std::optional<Time> heard;  // when somebody in the chain last answered
-  bool reached = false;       // since the last out_of_reach()
-  bool silent = false;        // out_of_reach() was called for it, and nobody has answered since
+  std::optional<Time> heard;            // when somebody in the chain last answered
+  bool reached = false;                 // since the last out_of_reach()
+  bool silent = false;                  // out_of_reach() was called for it, and nobody has answered since
   std::uint16_t count = 0, states = 0;  // of the last cycle that came back
   unsigned count_stands = 0;            // cycles that it has been the same
   std::optional<std::uint16_t> scanned_count;
@@ -117,6 +117,7 @@ struct MasterState {
   // Service
   bool service_in_flight = false, both_ports = true, scan_wanted = false, closing = false;
   Time next_service{}, next_scan{};
+  unsigned service_losses = 0;
   std::size_t first_robot = 0;
 };
 

@@ -1,0 +1,259 @@
+// What goes wrong on the wire and in robots, and that the others do not notice.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/unit/ethercat/master_segment.hpp"
+
+namespace meca::ethercat::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Every robot but `but` takes fresh inputs in every cycle from now on.
+void expect_no_missed_cycle(Segment& segment, std::size_t robots, std::size_t but) {
+  for (std::size_t i = 0; i < robots; ++i) segment.master().take_fresh(i);
+  segment.every_cycle = [=, first = true](Segment& s) mutable {
+    for (std::size_t i = 0; i < robots; ++i) {
+      if (i == but) continue;
+      const bool fresh = s.master().take_fresh(i);
+      if (!first) {
+        EXPECT_TRUE(fresh) << "robot " << i << " at " << s.now().count();
+      }
+    }
+    first = false;
+  };
+}
+
+TEST(MasterFaults, ASingleLostFrameIsCountedAndNothingElse) {
+  Segment segment(settings_for(2));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.fate = [once = true](std::size_t) mutable { return Fate{.lost = std::exchange(once, false)}; };
+  segment.run(500ms);
+  EXPECT_EQ(segment.master().counters().lost_frames, 1u);
+  EXPECT_TRUE(segment.all_operational());
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  EXPECT_EQ(segment.master().counters().scans, 1u);
+}
+
+class LostRegularly : public testing::TestWithParam<unsigned> {};
+
+TEST_P(LostRegularly, ItStillBecomesOperationalAndStaysIt) {
+  Segment segment(settings_for(3));
+  segment.fate = [](std::size_t frame) { return Fate{.lost = frame % GetParam() == 0}; };
+  ASSERT_TRUE(segment.start(60s)) << segment.master().trouble(0);
+  segment.run(2s);
+  EXPECT_TRUE(segment.all_operational());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.master().counters(i).losses, 0u);
+  EXPECT_GT(segment.master().counters().lost_frames, 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Every, LostRegularly, testing::Values(4, 5, 7, 10, 15, 50));
+
+TEST(MasterFaults, OneFrameInFiveLostAtRandomDoesNotKeepRobotsFromOperating) {
+  Segment segment(settings_for(3));
+  std::mt19937 random(1);
+  segment.fate = [&](std::size_t) { return Fate{.lost = random() % 5 == 0}; };
+  ASSERT_TRUE(segment.start(60s)) << segment.master().trouble(0);
+  segment.run(5s);
+  EXPECT_TRUE(segment.all_operational());
+}
+
+TEST(MasterFaults, DoubledFramesAreDroppedAndCounted) {
+  Segment segment(settings_for(2));
+  segment.fate = [](std::size_t) { return Fate{.doubled = true}; };
+  ASSERT_TRUE(segment.start());
+  EXPECT_GT(segment.master().counters().unexpected_frames, 0u);
+  EXPECT_EQ(segment.master().counters().unexpected_frames, segment.master().counters().received_frames);
+  EXPECT_EQ(segment.master().counters(0).images, segment.master().counters(1).images);
+}
+
+TEST(MasterFaults, FramesHeldUpBeyondTheCycleAreLateAndStillUsed) {
+  Segment segment(settings_for(1));
+  segment.fate = [](std::size_t) { return Fate{.held_up = 1500us}; };
+  ASSERT_TRUE(segment.start());
+  EXPECT_GT(segment.master().counters().late_frames, 0u);
+  const auto images = segment.master().counters(0).images;
+  segment.run(100ms);
+  EXPECT_EQ(segment.master().counters(0).images, images + 100);
+}
+
+TEST(MasterFaults, FramesHeldUpBeyondTheTimeoutAreLostAndThenUnexpected) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  segment.run(20ms);
+  segment.fate = [once = true](std::size_t) mutable {
+    return Fate{.held_up = std::exchange(once, false) ? 6ms : Time{}};
+  };
+  segment.run(20ms);
+  EXPECT_EQ(segment.master().counters().lost_frames, 1u);
+  EXPECT_EQ(segment.master().counters().unexpected_frames, 1u);
+}
+
+TEST(MasterFaults, ForeignAndBrokenFramesChangeNothing) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  std::array<std::byte, kLongestFrame> buffer;
+  FrameWriter writer(buffer, MacAddress{std::byte{0x02}});
+  writer.add(Command::kBrd, 0x77, address_of(0, reg::kAlStatus), 2);
+  const Bytes foreign = writer.finish();
+  const auto before = segment.master().counters();
+  segment.master().received(Master::Port::kPrimary, foreign, segment.now());
+  segment.master().received(Master::Port::kPrimary, foreign.first(20), segment.now());
+  segment.master().received(Master::Port::kPrimary, {}, segment.now());
+  EXPECT_EQ(segment.master().counters().unexpected_frames, before.unexpected_frames + 1);
+  EXPECT_EQ(segment.master().counters().malformed_frames, before.malformed_frames + 2);
+  EXPECT_EQ(segment.master().counters().received_frames, before.received_frames);
+}
+
+TEST(MasterFaults, AWrongWorkingCounterOfOneRobotLeavesTheOthersAlone) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.device(1).faults().working_counter = -1;
+  segment.run(2ms);
+  segment.master().take_fresh(1);
+  expect_no_missed_cycle(segment, 3, 1);
+  segment.run(200ms);
+  EXPECT_FALSE(segment.master().take_fresh(1));
+  EXPECT_GE(segment.master().counters(1).working_counter_misses, 200u);
+  EXPECT_EQ(segment.master().counters(0).working_counter_misses, 0u);
+  EXPECT_THAT(segment.master().trouble(1), HasSubstr("not counted as it should be"));
+  segment.every_cycle = {};
+  segment.device(1).faults().working_counter = 0;
+  segment.run(10ms);
+  EXPECT_TRUE(segment.master().take_fresh(1));
+  EXPECT_EQ(segment.master().trouble(1), "");
+}
+
+TEST(MasterFaults, AnAlErrorOfOneRobotIsAcknowledgedAndItClimbsAgain) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  expect_no_missed_cycle(segment, 3, 1);
+  segment.device(1).raise_al_error(0x001B, segment.now());
+  segment.run(50ms);
+  segment.run(5s, [&] { return segment.all_operational(); });
+  EXPECT_TRUE(segment.all_operational()) << segment.master().trouble(1);
+  EXPECT_EQ(segment.master().counters(1).losses, 1u);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  EXPECT_EQ(segment.master().counters().scans, 1u);
+}
+
+TEST(MasterFaults, AfterAPauseOfTheMasterTheWatchdogHasTrippedAndAllComeBack) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.pause(300ms);
+  EXPECT_EQ(segment.device(0).state(), AlState::kSafeop);
+  segment.run(30ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.device(i).counters().watchdog_expiries, 1u);
+}
+
+TEST(MasterFaults, ACutCableTakesTheRobotsBehindItAndGivesThemBack) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.chain().cut(2);
+  segment.run(2s);
+  EXPECT_TRUE(segment.master().station(1).operational());
+  EXPECT_EQ(segment.master().station(2).phase(), Station::Phase::kAbsent);
+  EXPECT_EQ(segment.master().trouble(2),
+            "position 2 is not there: 2 devices answer; check cable and power behind position 1");
+  EXPECT_EQ(segment.master().chain().size(), 2u);
+  expect_no_missed_cycle(segment, 3, 2);
+  segment.chain().heal(2);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(2);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  EXPECT_EQ(segment.master().counters(2).losses, 1u);
+}
+
+TEST(MasterFaults, APowerCycledRobotGetsItsAddressAgainAndItsNeighboursMissNothing) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  expect_no_missed_cycle(segment, 3, 1);
+  segment.device(1).power_cycle(segment.now());
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  EXPECT_EQ(segment.device(1).esc().station_address(), 0x1002);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  EXPECT_EQ(segment.master().counters(2).losses, 0u);
+}
+
+TEST(MasterFaults, ARobotThatLosesPowerForAWhileCutsTheChainAndAllComeBack) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().set_powered(1, false);
+  segment.run(1s);
+  EXPECT_TRUE(segment.master().station(0).operational());
+  EXPECT_THAT(segment.master().trouble(1), HasSubstr("1 device answers; check cable and power behind position 0"));
+  segment.device(1).power_cycle(segment.now());
+  segment.chain().set_powered(1, true);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+}
+
+TEST(MasterFaults, NoCarrierIsSaidAtOnceAndTheRobotsComeBackWithIt) {
+  Segment segment(settings_for(2));
+  ASSERT_TRUE(segment.start());
+  segment.set_link(Master::Port::kPrimary, false);
+  EXPECT_EQ(segment.master().trouble(0), "no carrier");
+  EXPECT_FALSE(segment.master().station(0).operational());
+  segment.run(500ms);
+  const auto sent = segment.master().counters().sent_frames;
+  segment.run(10ms);
+  EXPECT_EQ(segment.master().counters().sent_frames, sent);
+  segment.set_link(Master::Port::kPrimary, true);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+}
+
+TEST(MasterFaults, TheCableOfTheMasterPulledIsSilenceAndHealsToo) {
+  Segment segment(settings_for(2));
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(0);
+  segment.run(300ms);
+  EXPECT_EQ(segment.master().trouble(1), "no device answers; check the cable to the first robot and its power");
+  EXPECT_FALSE(segment.master().station(1).operational());
+  segment.chain().heal(0);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+}
+
+TEST(MasterFaults, TheDevicesOwnErrorCountersAreSummedUp) {
+  Segment segment(settings_for(2));
+  ASSERT_TRUE(segment.start());
+  segment.run(1500ms);
+  for (int i = 0; i < 100; ++i) segment.device(0).esc().count_invalid_frame(0);
+  segment.run(1500ms);
+  EXPECT_EQ(segment.master().counters(0).invalid_frames[0], 100u);
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 100; ++i) segment.device(0).esc().count_invalid_frame(0);
+    segment.run(1500ms);
+  }
+  EXPECT_EQ(segment.master().counters(0).invalid_frames[0], 400u) << "they stop at 255 and are cleared before";
+}
+
+TEST(MasterFaults, CloseBringsAllToInitAndProcessDataGoesOnUntilThen) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.master().close(segment.now());
+  EXPECT_TRUE(segment.run(2s, [&] { return segment.master().closed(); }));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(segment.device(i).state(), AlState::kInit);
+    EXPECT_EQ(segment.device(i).counters().watchdog_expiries, 0u);
+    EXPECT_EQ(segment.master().counters(i).losses, 0u);
+  }
+}
+
+TEST(MasterFaults, CloseWithRobotsThatWereNeverFoundIsDoneAtOnce) {
+  Segment segment(settings_for(2), std::vector<DeviceSettings>(1));
+  segment.run(1s);
+  segment.master().close(segment.now());
+  EXPECT_TRUE(segment.run(2s, [&] { return segment.master().closed(); }));
+  EXPECT_EQ(segment.device(0).state(), AlState::kInit);
+}
+
+}  // namespace
+}  // namespace meca::ethercat::test

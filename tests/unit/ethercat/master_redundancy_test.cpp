@@ -1,0 +1,115 @@
+// Cable redundancy: a ring on two ports of the master.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/ethercat/master_segment.hpp"
+
+namespace meca::ethercat::test {
+namespace {
+
+using Port = Master::Port;
+
+MasterSettings ring_of(std::size_t robots) {
+  MasterSettings out = settings_for(robots);
+  out.redundant = true;
+  return out;
+}
+
+TEST(MasterRedundancy, AWholeRingRunsAndIsNotOpen) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  EXPECT_FALSE(segment.master().ring_open());
+  EXPECT_EQ(segment.master().counters().unexpected_frames, 0u);
+  EXPECT_EQ(segment.master().counters().lost_frames, 0u);
+}
+
+class CutAt : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(CutAt, NoRobotLeavesOpOrMissesACycleAndTheRingIsOpenUntilItIsHealed) {
+  const std::size_t cut = GetParam();
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  segment.run(10ms);
+  segment.chain().cut(cut);
+  if (cut == 0) segment.set_link(Port::kPrimary, false);
+  if (cut == 3) segment.set_link(Port::kSecondary, false);
+  const auto images = segment.master().counters(2).images;
+  segment.run(1s);
+  EXPECT_TRUE(segment.all_operational()) << segment.master().trouble(0);
+  EXPECT_TRUE(segment.master().ring_open());
+  EXPECT_EQ(segment.master().counters(2).images, images + 1000);
+  segment.chain().heal(cut);
+  segment.set_link(Port::kPrimary, true);
+  segment.set_link(Port::kSecondary, true);
+  segment.run(500ms);
+  EXPECT_FALSE(segment.master().ring_open());
+  EXPECT_TRUE(segment.all_operational());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(segment.master().counters(i).losses, 0u);
+    EXPECT_EQ(segment.master().counters(i).working_counter_misses, 0u);
+    EXPECT_EQ(segment.device(i).counters().watchdog_expiries, 0u);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Cables, CutAt, testing::Values(0, 1, 2, 3));
+
+TEST(MasterRedundancy, ACutThatNoCarrierTellsOfIsSurvivedToo) {
+  for (const std::size_t cut : {0, 3}) {
+    Segment segment(ring_of(3));
+    ASSERT_TRUE(segment.start());
+    segment.chain().cut(cut);
+    segment.run(1s);
+    EXPECT_TRUE(segment.all_operational()) << segment.master().trouble(0);
+    EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  }
+}
+
+TEST(MasterRedundancy, StartedWithAnOpenRingTheRobotsBeforeTheBreakRunAndTheOthersWhenItIsWhole) {
+  Segment segment(ring_of(3));
+  segment.chain().cut(2);
+  segment.run(5s);
+  EXPECT_TRUE(segment.master().station(0).operational()) << segment.master().trouble(0);
+  EXPECT_TRUE(segment.master().station(1).operational());
+  EXPECT_FALSE(segment.master().station(2).operational());
+  EXPECT_TRUE(segment.master().ring_open());
+  segment.chain().heal(2);
+  segment.run(1s);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  segment.run(5s, [&] { return segment.all_operational(); });
+  EXPECT_TRUE(segment.all_operational()) << segment.master().trouble(2);
+}
+
+TEST(MasterRedundancy, ARobotPowerCycledBeforeTheBreakOfAnOpenRingComesBack) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(2);
+  segment.run(100ms);
+  segment.device(0).power_cycle(segment.now());
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  EXPECT_EQ(segment.master().counters(1).losses, 0u);
+  EXPECT_EQ(segment.master().counters(2).losses, 0u);
+}
+
+TEST(MasterRedundancy, OneCopyLostIsCountedAndTheOtherTaken) {
+  Segment segment(ring_of(2));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.fate = [](std::size_t frame) { return Fate{.lost = frame % 10 == 3}; };
+  segment.run(1s);
+  EXPECT_TRUE(segment.all_operational());
+  EXPECT_GT(segment.master().counters().lost_frames, 0u);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+}
+
+TEST(MasterRedundancy, CloseInAnOpenRingReachesAll) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(1);
+  segment.run(20ms);
+  segment.master().close(segment.now());
+  EXPECT_TRUE(segment.run(2s, [&] { return segment.master().closed(); }));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.device(i).state(), AlState::kInit);
+}
+
+}  // namespace
+}  // namespace meca::ethercat::test

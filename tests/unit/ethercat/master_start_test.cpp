@@ -1,0 +1,228 @@
+// The way up of whole chains, and which device is which robot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/ethercat/master_segment.hpp"
+
+namespace meca::ethercat::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+image::OutputBytes output_of(std::uint8_t value) {
+  image::OutputBytes out;
+  out.fill(static_cast<std::byte>(value));
+  return out;
+}
+
+class MasterStart : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(MasterStart, EveryRobotBecomesOperationalAndImagesPassBothWays) {
+  const std::size_t count = GetParam();
+  Segment segment(settings_for(count));
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  for (std::size_t i = 0; i < count; ++i)
+    segment.master().set_output(i, output_of(static_cast<std::uint8_t>(i + 1)), true);
+  segment.run(5ms);
+  for (std::size_t i = 0; i < count; ++i) {
+    EXPECT_EQ(segment.device(i).output(), output_of(static_cast<std::uint8_t>(i + 1)));
+    EXPECT_EQ(segment.master().input(i)[251], static_cast<std::byte>(0x10 + i));
+    EXPECT_TRUE(segment.master().take_fresh(i));
+    EXPECT_FALSE(segment.master().take_fresh(i));
+    EXPECT_EQ(segment.master().trouble(i), "");
+    EXPECT_EQ(segment.master().counters(i).working_counter_misses, 0u);
+  }
+  EXPECT_EQ(segment.master().counters().lost_frames, 0u);
+  EXPECT_EQ(segment.master().counters().unexpected_frames, 0u);
+  EXPECT_EQ(segment.master().counters().scans, 1u);
+}
+INSTANTIATE_TEST_SUITE_P(Robots, MasterStart, testing::Values(1, 3, 8, 32));
+
+TEST(MasterStart, OneFrameACycleCarriesFourRobotsAndFiveTakeTwo) {
+  for (const auto& [robots, frames] : {std::pair{4u, 1u}, std::pair{5u, 2u}}) {
+    Segment segment(settings_for(robots));
+    ASSERT_TRUE(segment.start());
+    unsigned with_process_data = 0;
+    segment.sent = [&](Bytes frame, Chain::Side) {
+      DatagramWalk<const std::byte> walk(frame);
+      bool found = false;
+      while (const auto datagram = walk.next()) found = found || datagram->command() == Command::kLrw;
+      with_process_data += found;
+    };
+    segment.run(10ms);
+    EXPECT_EQ(with_process_data, 10 * frames) << robots;
+  }
+}
+
+TEST(MasterStart, InvalidOutputsRepeatWhatWasLastValid) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  segment.run(3ms);
+  EXPECT_EQ(segment.device(0).output(), output_of(0));
+  segment.master().set_output(0, output_of(7), false);
+  segment.run(3ms);
+  EXPECT_EQ(segment.device(0).output(), output_of(0));
+  segment.master().set_output(0, output_of(7), true);
+  segment.run(3ms);
+  segment.master().set_output(0, output_of(9), false);
+  segment.run(3ms);
+  EXPECT_EQ(segment.device(0).output(), output_of(7));
+}
+
+void expect_separate(Segment& segment) {
+  bool lrw = false, lrd = false, lwr = false;
+  segment.sent = [&](Bytes frame, Chain::Side) {
+    DatagramWalk<const std::byte> walk(frame);
+    while (const auto datagram = walk.next()) {
+      lrw = lrw || datagram->command() == Command::kLrw;
+      lrd = lrd || datagram->command() == Command::kLrd;
+      lwr = lwr || datagram->command() == Command::kLwr;
+    }
+  };
+  ASSERT_TRUE(segment.start());
+  segment.master().set_output(0, output_of(5), true);
+  segment.run(10ms);
+  EXPECT_FALSE(lrw);
+  EXPECT_TRUE(lrd && lwr);
+  EXPECT_EQ(segment.device(0).output(), output_of(5));
+  EXPECT_TRUE(segment.master().take_fresh(0));
+  EXPECT_EQ(segment.master().counters(0).working_counter_misses, 0u);
+}
+
+TEST(MasterStart, SeparateReadsAndWritesOnRequest) {
+  MasterSettings settings = settings_for(2);
+  settings.separate = true;
+  Segment segment(settings);
+  expect_separate(segment);
+}
+
+TEST(MasterStart, ADeviceThatCannotReadAndWriteInOneGetsSeparateDatagrams) {
+  std::vector<DeviceSettings> devices(1);
+  devices[0].esc.features |= kFeatureNoLrw;
+  Segment segment(settings_for(1), devices);
+  expect_separate(segment);
+}
+
+TEST(MasterStart, EveryLayoutBecomesOperational) {
+  for (const auto& [layout, firmware, major] : {std::tuple{image::Layout::kFirmware9, "9.3.3.5809", 9},
+                                                std::tuple{image::Layout::kFirmware10, "10.2.1.9000", 10},
+                                                std::tuple{image::Layout::kFirmware11, "11.3.3.12637", 11}}) {
+    std::vector<DeviceSettings> devices(1);
+    devices[0].layout = layout;
+    devices[0].firmware = firmware;
+    Segment segment(settings_for(1), devices);
+    ASSERT_TRUE(segment.start()) << firmware << ": " << segment.master().trouble(0);
+    EXPECT_EQ(segment.master().station(0).firmware().major, major);
+  }
+}
+
+TEST(MasterStart, TheAliasFindsARobotWhereverItStands) {
+  MasterSettings settings;
+  settings.robots = {{0, 7}, {0, 5}};
+  std::vector<DeviceSettings> devices(2);
+  devices[0].alias = 5;
+  devices[1].alias = 7;
+  Segment segment(settings, devices);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  segment.run(5ms);
+  EXPECT_EQ(segment.master().input(0)[0], std::byte{0x11});
+  EXPECT_EQ(segment.master().input(1)[0], std::byte{0x10});
+}
+
+TEST(MasterStart, AMissingAliasIsNamedAndADoubleOneToo) {
+  MasterSettings settings;
+  settings.robots = {{0, 7}, {0, 5}};
+  std::vector<DeviceSettings> devices(2);
+  devices[0].alias = devices[1].alias = 7;
+  Segment segment(settings, devices);
+  segment.run(2s);
+  EXPECT_EQ(segment.master().trouble(0), "alias 7 is there twice, at positions 0 and 1; give each robot its own");
+  EXPECT_THAT(segment.master().trouble(1), StartsWith("no robot with alias 5 is there: 2 devices answer; "));
+}
+
+TEST(MasterStart, ARobotThatIsNotThereIsSaidToBeBehindTheLastThatIs) {
+  Segment segment(settings_for(3), std::vector<DeviceSettings>(2));
+  segment.run(3s);
+  EXPECT_TRUE(segment.master().station(0).operational());
+  EXPECT_TRUE(segment.master().station(1).operational());
+  EXPECT_EQ(segment.master().trouble(2),
+            "position 2 is not there: 2 devices answer; check cable and power behind position 1");
+}
+
+TEST(MasterStart, AForeignDeviceInTheMiddleIsLeftAloneAndItsNeighboursRun) {
+  std::vector<DeviceSettings> devices(3);
+  devices[1].vendor = 2;
+  devices[1].product = 0x044C2C52;
+  Segment segment(settings_for(3), devices);
+  segment.run(3s);
+  EXPECT_TRUE(segment.master().station(0).operational());
+  EXPECT_TRUE(segment.master().station(2).operational());
+  EXPECT_THAT(
+      segment.master().trouble(1),
+      HasSubstr("position 1 is vendor 0x00000002, product 0x044C2C52, not a Meca500 (vendor 0x00ECADE1, product "
+                "0x0004D500): it is left alone"));
+  EXPECT_EQ(segment.device(1).state(), AlState::kInit);
+  ASSERT_EQ(segment.master().chain().size(), 3u);
+  EXPECT_EQ(segment.master().chain()[1].vendor, 2u);
+  EXPECT_FALSE(segment.master().chain()[1].robot);
+  EXPECT_EQ(segment.master().chain()[2].robot, 2u);
+}
+
+TEST(MasterStart, AnotherRobotOfTheSameMakerIsNamed) {
+  std::vector<DeviceSettings> devices(1);
+  devices[0].product = 0x04DC5500;
+  Segment segment(settings_for(1), devices);
+  segment.run(1s);
+  EXPECT_THAT(segment.master().trouble(0), HasSubstr("product 0x04DC5500 (MCS500), not a Meca500"));
+}
+
+TEST(MasterStart, RobotsThatKeepTheAddressesOfAnotherMasterGetNewOnes) {
+  std::vector<DeviceSettings> devices(3);
+  Segment segment(settings_for(3), devices);
+  ASSERT_TRUE(segment.start());
+  // The same robots, in another order, under a master that knows nothing: addresses 1003h, 1001h, 1002h stand in them.
+  MasterSettings settings = settings_for(3);
+  Master second(settings);
+  Chain chain({&segment.device(2), &segment.device(0), &segment.device(1)});
+  Time now = segment.now();
+  bool operational = false;
+  for (int cycle = 0; cycle < 20'000 && !operational; ++cycle) {
+    second.begin_cycle(now);
+    for (int step = 0; step < 10; ++step, now += 100us) {
+      for (std::size_t i = 0; i < 3; ++i) segment.device(i).tick(now);
+      for (Bytes frame = second.next_frame(now); !frame.empty(); frame = second.next_frame(now)) {
+        std::array<std::byte, kLongestFrame> bytes;
+        std::ranges::copy(frame, bytes.begin());
+        const auto reply = std::span(bytes).first(frame.size());
+        if (chain.process(Chain::Side::kPrimary, reply, now)) second.received(Master::Port::kPrimary, reply, now);
+      }
+    }
+    operational = second.station(0).operational() && second.station(1).operational() && second.station(2).operational();
+  }
+  EXPECT_TRUE(operational);
+  EXPECT_EQ(segment.device(2).esc().station_address(), 0x1001);
+  EXPECT_EQ(segment.device(0).esc().station_address(), 0x1002);
+}
+
+TEST(MasterStart, WithoutAnybodyItSaysThatNobodyAnswersAndFindsThemWhenTheyCome) {
+  Segment segment(settings_for(2));
+  segment.chain().cut(0);
+  segment.run(500ms);
+  EXPECT_EQ(segment.master().trouble(0), "no device answers; check the cable to the first robot and its power");
+  segment.chain().heal(0);
+  EXPECT_TRUE(segment.start());
+}
+
+TEST(MasterStart, SlowSiiWithEightBytesAReadIsReadToo) {
+  std::vector<DeviceSettings> devices(2);
+  for (DeviceSettings& device : devices) {
+    device.esc.sii_reads_8_bytes = true;
+    device.esc.sii_busy = 3ms;
+  }
+  Segment segment(settings_for(2), devices);
+  EXPECT_TRUE(segment.start());
+}
+
+}  // namespace
+}  // namespace meca::ethercat::test
