@@ -63,8 +63,8 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
       said_up_ = up;
       said_detail_ = record.link_detail;
     }
-  } else if (!up && !said_up_ && !record.link_detail.empty() && record.link_detail != said_detail_ &&
-             now >= quiet_[kLinkTrouble].until) {
+  } else if (record.link == LinkState::kDown && !said_up_ && !record.link_detail.empty() &&
+             record.link_detail != said_detail_ && now >= quiet_[kLinkTrouble].until) {
     say(kLinkTrouble, Level::kWarning, "no link: " + std::string(record.link_detail.view()), now, lines);
     said_detail_ = record.link_detail;
   }

@@ -111,7 +111,7 @@ TEST_F(EndToEndOverEthercat, ALostRobotIsDisconnectedInItsTopicsAndComesBackToMo
       joints, "arm3", sample, [](const auto& s) { return s.header().quality() == meca500::Quality::DISCONNECTED; }));
   meca500::BridgeStatus said;
   EXPECT_TRUE(arrives<meca500::BridgeStatus>(status, "arm3", said, [](const auto& s) {
-    return s.link_detail().to_string().find("2 of 3") != std::string::npos;
+    return s.link_detail().to_string().find("position 2 is not there") != std::string::npos;
   })) << said.link_detail().to_string();
   ASSERT_NO_FATAL_FAILURE(client.complete("arm1", meca500::CommandKind::TAKE_CONTROL));
 

@@ -116,8 +116,8 @@ class Bus final : public transports::Transport {
 
 void Bus::open(Time now) {
   const bool redundant = !options_.redundant_interface.empty();
-  ports_[0] = {net::RawEthernet(options_.interface, kEtherType)};
-  if (redundant) ports_[1] = {net::RawEthernet(options_.redundant_interface, kEtherType)};
+  ports_[0].socket = net::RawEthernet(options_.interface, kEtherType);
+  if (redundant) ports_[1].socket = net::RawEthernet(options_.redundant_interface, kEtherType);
   for (std::size_t port = 0; port < kPorts; ++port) poller_.watch(port, ports_[port].socket.descriptor());
   MasterSettings settings;
   settings.robots = places_;

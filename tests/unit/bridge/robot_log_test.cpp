@@ -84,6 +84,18 @@ TEST(RobotLog, AnotherReasonWhyThereIsNoLinkIsSaidOnce) {
   EXPECT_THAT(said(log, down, 11s), ElementsAre("arm1: no link: no answer"));
 }
 
+TEST(RobotLog, WhatHappensOnTheWayUpIsNoReasonWhyThereIsNoLink) {
+  RobotLog log("arm1");
+  CycleRecord record;
+  EXPECT_THAT(said(log, record, 0s), ElementsAre("arm1: no link yet"));
+  record.link = transports::LinkState::kConnecting;
+  record.link_detail = "is being brought to SAFEOP";
+  EXPECT_THAT(said(log, record, 1s), IsEmpty());
+  record.link = transports::LinkState::kDown;
+  record.link_detail = "refuses SAFEOP: invalid output mapping";
+  EXPECT_THAT(said(log, record, 2s), ElementsAre("arm1: no link: refuses SAFEOP: invalid output mapping"));
+}
+
 TEST(RobotLog, FirmwareIsNamedOnceAndAMismatchIsAnError) {
   RobotLog log("arm1");
   auto record = good();
