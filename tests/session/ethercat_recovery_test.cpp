@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <thread>
 
 #include "tests/session/segment.hpp"
 
@@ -137,6 +139,29 @@ TEST_F(EthercatRecovery, RepliesThatAreLostForAMomentCostImagesAndNothingElse) {
   EXPECT_TRUE(goes_on(bus, 0) && goes_on(bus, 1));
   EXPECT_EQ(host.state(0), AlState::kOp);
   EXPECT_EQ(bus.counter("losses", 0), 0);
+}
+
+TEST_F(EthercatRecovery, AFloodOfStrangeFramesCostsTimeAndIsCounted) {
+  ChainHost host(chain_of(1));
+  Segment bus(first(1));
+  ASSERT_TRUE(bus.until_up()) << bus.detail();
+  std::jthread flood([](const std::stop_token& stop) {
+    net::RawEthernet stranger("robot1", kEtherType);
+    std::array<std::byte, kLongestFrame> buffer{};
+    FrameWriter writer(buffer, MacAddress{kReplyBit});
+    writer.add(Command::kLrw, 0xEE, 0x12345678, 100);
+    const Bytes never_sent = writer.finish();
+    const Bytes cut = never_sent.first(60);
+    while (!stop.stop_requested()) {
+      stranger.send(never_sent);
+      stranger.send(cut);
+    }
+  });
+  EXPECT_TRUE(
+      bus.until([&] { return bus.counter("unexpected_frames") > 5000 && bus.counter("malformed_frames") > 5000; }));
+  flood.request_stop();
+  EXPECT_TRUE(bus.until_up()) << bus.detail();
+  EXPECT_TRUE(goes_on(bus, 0));
 }
 
 class EthercatRing : public OnACable {
