@@ -90,6 +90,7 @@ TEST_F(EthercatRecovery, ACableThatIsPulledIsNoCarrier) {
   ASSERT_TRUE(bus.until([&] { return !bus.detail().empty(); }));
   EXPECT_EQ(bus.detail(), "no carrier on 'eth1'; check its cable and the power of the robot at the other end");
   ASSERT_TRUE(network.ip("link set robot1 up"));
+  ASSERT_TRUE(bus.until([&] { return bus.detail().find("no device answers") != std::string::npos; })) << bus.detail();
   ChainHost host(chain_of(1));
   EXPECT_TRUE(bus.until_up()) << bus.detail();
 }

@@ -10,6 +10,7 @@ namespace meca::ethercat {
 namespace {
 
 using Phase = Station::Phase;
+constexpr std::string_view kLookedThrough = "the chain is being looked through";
 constexpr Time kLeastSilence = std::chrono::milliseconds(100);
 constexpr unsigned kMissesToSay = 10, kUnequalPauses = 4;
 
@@ -42,7 +43,7 @@ MasterState::MasterState(const MasterSettings& from)
   robots.reserve(settings.robots.size());
   for (std::size_t i = 0; i < settings.robots.size(); ++i) {
     robots.emplace_back(settings.robots[i], station_settings(settings, i));
-    robots.back().trouble = "the chain is being looked through";
+    robots.back().trouble = kLookedThrough;
   }
   chain.reserve(ChainScan::kMostDevices);
 }
@@ -158,6 +159,7 @@ void Master::received(Port port, Bytes frame, Time now) noexcept {
 
 void Master::link_changed(Port port, bool up, Time now) noexcept {
   MasterState& state = *state_;
+  const bool had_port = state.any_port();
   state.ports[static_cast<std::size_t>(port)] = up && (port == Port::kPrimary || state.settings.redundant);
   if (state.settings.redundant && state.copies() == 1) {
     state.ring_open = true;
@@ -165,6 +167,9 @@ void Master::link_changed(Port port, bool up, Time now) noexcept {
   }
   if (state.any_port()) {
     if (!state.reached) state.heard = now;  // time to answer
+    if (!had_port) {
+      for (Robot& robot : state.robots) robot.trouble = kLookedThrough;
+    }
     return;
   }
   state.cyclic_due = state.silent = false;
