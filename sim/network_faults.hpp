@@ -15,10 +15,23 @@ struct NetworkAddress {
   friend bool operator==(const NetworkAddress&, const NetworkAddress&) = default;
 };
 
+enum class Fieldbus : std::uint8_t { kEthernetIp, kEthercat };
+
 struct NetworkFaults {
-  bool unplugged = false;  // nothing goes in or out
-  bool frozen = false;     // explicit messages are answered, I/O is not handled
-  Time late{};             // explicit messages and discovery are answered so much later
+  Fieldbus bus = Fieldbus::kEthernetIp;  // which this network is; not a fault
+
+  bool unplugged = false;  // nothing goes in or out; EtherCAT: neither by the cable before nor by the one behind it
+  bool without_power = false;
+  bool frozen = false;  // explicit messages and mails are answered, I/O is not handled
+  Time late{};          // explicit messages and discovery are answered so much later; EtherCAT: every frame
+
+  // EtherCAT (transports/ethercat/device.hpp says what most of them do)
+  bool cut = false;              // the cable before this robot, towards the master
+  std::uint32_t lose_next = 0;   // so many frames do not come back; counted down by who loses them
+  std::uint32_t lose_every = 0;  // one of so many frames does not come back; 0: none
+  int working_counter = 0;
+  std::optional<std::uint16_t> refuse_state;
+  bool lose_mails = false, no_mailbox = false;
 
   // EtherNet/IP (transports/ethernet_ip/adapter.hpp says what each does)
   std::optional<std::uint16_t> refuse_open;
@@ -28,8 +41,13 @@ struct NetworkFaults {
   std::optional<NetworkAddress> foreign_address;
   bool stop_producing = false, duplicate = false, stale_sequence = false, corrupt = false, frozen_count = false;
 
-  // Not a state but events: how often it was asked for.
-  std::uint64_t tcp_closures = 0;
+  // Not states but events: how often each was asked for, and with which code last.
+  struct Events {
+    std::uint64_t tcp_closures = 0, al_errors = 0, emergencies = 0;
+    std::uint16_t al_error = 0, emergency = 0;
+    friend bool operator==(const Events&, const Events&) = default;
+  };
+  Events events;
 
   friend bool operator==(const NetworkFaults&, const NetworkFaults&) = default;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "sim/panel_table.hpp"
@@ -13,11 +14,31 @@ namespace {
 
 using Tokens = std::vector<std::string_view>;
 
-std::size_t row_count() noexcept { return robot_rows().size() + network_rows().size(); }
-const Row& row_of(std::size_t word) noexcept {
-  const auto robot = robot_rows();
-  return word < robot.size() ? robot[word] : network_rows()[word - robot.size()];
+struct Table {
+  std::span<const Row> (*rows)() noexcept;
+  std::string_view heading;     // in the help
+  std::optional<Fieldbus> bus;  // the only one that its words are for
+};
+constexpr Table kTables[] = {{robot_rows, "", {}},
+                             {network_rows, "and with a network in between (meca-sim):\n", {}},
+                             {ethernet_ip_rows, "on EtherNet/IP:\n", Fieldbus::kEthernetIp},
+                             {ethercat_rows, "on EtherCAT:\n", Fieldbus::kEthercat}};
+
+struct Place {
+  const Table* table;
+  const Row* row;
+};
+Place place_of(std::size_t word) noexcept {
+  const Table* table = kTables;
+  while (word >= table->rows().size()) word -= (table++)->rows().size();
+  return {table, &table->rows()[word]};
 }
+std::size_t row_count() noexcept {
+  std::size_t count = 0;
+  for (const Table& table : kTables) count += table.rows().size();
+  return count;
+}
+const Row& row_of(std::size_t word) noexcept { return *place_of(word).row; }
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
@@ -196,22 +217,39 @@ std::variant<PanelRequest, std::string> parse_panel_line(std::string_view line) 
   return no_such_word(tokens);
 }
 
+std::string_view misplaced(const PanelRequest& request, Fieldbus bus) noexcept {
+  const auto only = place_of(request.word).table->bus;
+  if (!only || *only == bus) return {};
+  switch (bus) {
+    case Fieldbus::kEthernetIp:
+      return "that is a word for EtherCAT, and this robot is on EtherNet/IP; 'help' says which words are for it";
+    case Fieldbus::kEthercat:
+      return "that is a word for EtherNet/IP, and this robot is on EtherCAT; 'help' says which words are for it";
+  }
+  return {};
+}
+
 void apply(const PanelRequest& request, Robot& robot, NetworkFaults* network, PanelAnswer& answer) noexcept {
   const Row& row = row_of(request.word);
   if (row.apply != nullptr) return row.apply(robot, request, answer);
-  if (network != nullptr) return row.apply_to_network(*network, request, answer);
-  refused(answer, "this robot is built into the bridge, there is no network in between; meca-sim has one");
+  if (network == nullptr) {
+    return refused(answer, "this robot is built into the bridge, there is no network in between; meca-sim has one");
+  }
+  const std::string_view complaint = misplaced(request, network->bus);
+  if (!complaint.empty()) return refused(answer, complaint);
+  row.apply_to_network(*network, request, answer);
 }
 
 std::string panel_help() {
   std::size_t width = 0;
   for (std::size_t i = 0; i < row_count(); ++i) width = std::max(width, usage(row_of(i)).size());
   std::string text;
-  for (std::size_t i = 0; i < row_count(); ++i) {
-    if (i == robot_rows().size()) text += "and with a network in between (meca-sim):\n";
-    std::string line = usage(row_of(i));
-    line += std::string(width + 2 - line.size(), ' ') + std::string(row_of(i).about);
-    text += line + "\n";
+  for (const Table& table : kTables) {
+    text += table.heading;
+    for (const Row& row : table.rows()) {
+      const std::string words = usage(row);
+      text += words + std::string(width + 2 - words.size(), ' ') + std::string(row.about) + "\n";
+    }
   }
   return text;
 }

@@ -1,6 +1,7 @@
 // What a person or a test says to a simulated robot, and what comes back: one line of words, a request that may cross
 // to the thread that steps the robot, an answer that may cross back, text again. A new word is one row of a table: in
-// panel_robot.cpp what concerns the robot, in panel_network.cpp what concerns the network between it and its host.
+// panel_robot.cpp what concerns the robot, in panel_network.cpp what concerns the network between it and its host, in
+// panel_ethernet_ip.cpp and panel_ethercat.cpp what there is on that bus only.
 #pragma once
 
 #include <array>
@@ -24,6 +25,9 @@ struct PanelRequest {
 // The request, or a sentence without full stop that says what is wrong and what instead. Capitals, and how many blanks
 // stand between words, do not matter.
 std::variant<PanelRequest, std::string> parse_panel_line(std::string_view line);
+
+// Why these words are none on this bus, without full stop; empty where they are.
+std::string_view misplaced(const PanelRequest& request, Fieldbus bus) noexcept;
 
 // Facts as of the robot's last step; stops and the two modes as of now.
 struct PanelStatus {
@@ -49,7 +53,7 @@ struct PanelAnswer {
 };
 
 // Does what is asked. Only the thread that steps the robot may call it; does not allocate, lock or throw. `network`:
-// nullptr when there is none between this robot and its host, and its words are refused.
+// nullptr when there is none between this robot and its host, and its words are refused, as are those of another bus.
 void apply(const PanelRequest& request, Robot& robot, NetworkFaults* network, PanelAnswer& answer) noexcept;
 
 // "ok: ..." or "error: ...", then the lines of a list, two blanks before each. Every line ends with '\n', none is

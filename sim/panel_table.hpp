@@ -1,5 +1,5 @@
-// The table of words behind panel.hpp, for its own files only: panel_robot.cpp and panel_network.cpp have the rows,
-// panel.cpp reads lines by them.
+// The table of words behind panel.hpp, for its own files only: panel_robot.cpp, panel_network.cpp and one file for each
+// fieldbus have the rows, panel.cpp reads lines by them.
 #pragma once
 
 #include <cmath>
@@ -35,9 +35,18 @@ struct Row {
   void (*apply_to_network)(NetworkFaults&, const PanelRequest&, PanelAnswer&) noexcept = nullptr;
 };
 
-// A request's word is the number of its row, those of the network behind those of the robot.
+// A row about the network: its word only sets something, and says so.
+using ApplyToNetwork = void (*)(NetworkFaults&, const PanelRequest&, PanelAnswer&) noexcept;
+constexpr Row network_row(std::string_view words, std::span<const Number> numbers, std::string_view about,
+                          ApplyToNetwork apply) {
+  return {words, numbers, about, nullptr, nullptr, apply};
+}
+
+// A request's word is the number of its row, through these tables one after the other.
 std::span<const Row> robot_rows() noexcept;
-std::span<const Row> network_rows() noexcept;
+std::span<const Row> network_rows() noexcept;  // on any bus
+std::span<const Row> ethernet_ip_rows() noexcept;
+std::span<const Row> ethercat_rows() noexcept;
 
 inline void done(PanelAnswer& answer, std::string_view sentence) noexcept {
   answer.kind = PanelAnswer::Kind::kDone;

@@ -115,6 +115,7 @@ std::string faults_text(const NetworkFaults& f) {
     return std::string(buffer.data(), static_cast<std::size_t>(length));
   };
   add(f.unplugged, "unplug");
+  add(f.without_power, "power off");
   add(f.frozen, "freeze");
   add(f.late > Time::zero(), with("late %.6g", std::chrono::duration<double, std::milli>(f.late).count()));
   if (f.refuse_open) add(true, with("refuse open 0x%04x", unsigned{*f.refuse_open}));
@@ -131,6 +132,13 @@ std::string faults_text(const NetworkFaults& f) {
   add(f.stale_sequence, "stale sequence");
   add(f.corrupt, "corrupt");
   add(f.frozen_count, "frozen count");
+  add(f.cut, "cut");
+  add(f.lose_next > 0, with("lose next %u", unsigned{f.lose_next}));
+  add(f.lose_every > 0, with("lose every %u", unsigned{f.lose_every}));
+  add(f.lose_mails, "lose mails");
+  add(f.no_mailbox, "no mailbox");
+  add(f.working_counter != 0, with("working counter %d", f.working_counter));
+  if (f.refuse_state) add(true, with("refuse state 0x%04x", unsigned{*f.refuse_state}));
   return text.empty() ? "nothing is wrong with the network" : text;
 }
 

@@ -62,12 +62,17 @@ void EthernetIpRobot::carry_faults() noexcept {
   to.stale_sequence = faults_.stale_sequence;
   to.corrupt = faults_.corrupt;
   to.frozen_count = faults_.frozen_count;
-  if (faults_.tcp_closures != tcp_closures_) adapter_.close_tcp_connections();
-  tcp_closures_ = faults_.tcp_closures;
+  if (faults_.events.tcp_closures != tcp_closures_) adapter_.close_tcp_connections();
+  tcp_closures_ = faults_.events.tcp_closures;
+  // At once, so that nothing of it is left when the power is back.
+  if (faults_.without_power && !without_power_) robot_.power_cycle();
+  without_power_ = faults_.without_power;
 }
 
 void EthernetIpRobot::step() noexcept {
-  if (waiting_count_ > 0) {
+  if (without_power_) {
+    // It does not even begin to start up.
+  } else if (waiting_count_ > 0) {
     robot_.step(image::decode_outputs(waiting_.front(), format_), kCycle);
     std::shift_left(waiting_.begin(), waiting_.end(), 1);
     --waiting_count_;

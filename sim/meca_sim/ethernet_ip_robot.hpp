@@ -6,19 +6,13 @@
 #include <array>
 #include <optional>
 
+#include "sim/meca_sim/connection_loss.hpp"
 #include "sim/network_faults.hpp"
 #include "sim/robot.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 #include "transports/image/codec.hpp"
 
 namespace meca::sim {
-
-// What the robot does when its connection ends, by time-out or Forward Close. inferred: no document says what a
-// Meca500 does then (spec 4.2).
-enum class ConnectionLoss : std::uint8_t {
-  kStop,      // it ramps down, and the safety stop "connection dropped" stays until a host is back and resumes motion
-  kContinue,  // it finishes what is in its queue
-};
 
 class EthernetIpRobot {
  public:
@@ -66,6 +60,7 @@ class EthernetIpRobot {
   bool was_present_ = true;
   std::uint64_t opens_ = 0, ends_ = 0;  // of connections, as seen last
   std::uint64_t tcp_closures_ = 0;
+  bool without_power_ = false;
 };
 
 }  // namespace meca::sim

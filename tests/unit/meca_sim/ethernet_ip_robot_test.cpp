@@ -120,6 +120,18 @@ TEST(EthernetIpRobot, ForgetsItsHostWhenItStartsUp) {
   EXPECT_EQ(cell.robot.adapter().originator(), Cell::kHost);
 }
 
+TEST(EthernetIpRobot, WithoutPowerIsAwayAndStartsUpWhenItHasItAgain) {
+  Cell cell;
+  ASSERT_TRUE(cell.make_ready());
+  cell.robot.faults().without_power = true;
+  cell.run(10s);
+  EXPECT_FALSE(cell.robot.present());
+  cell.robot.faults().without_power = false;
+  ASSERT_TRUE(cell.until([&] { return cell.robot.present(); }, 1s));
+  EXPECT_FALSE(cell.robot.robot().inputs().robot_status.activated);
+  EXPECT_TRUE(cell.connect());
+}
+
 TEST(EthernetIpRobot, UnpluggedHearsAndSaysNothing) {
   Cell cell;
   ASSERT_TRUE(cell.connect());

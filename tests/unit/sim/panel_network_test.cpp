@@ -12,6 +12,7 @@ using testing::HasSubstr;
 
 // A robot with a network in between, and what a person reads after a line.
 struct Bench {
+  explicit Bench(Fieldbus bus = Fieldbus::kEthernetIp) { faults.bus = bus; }
   std::string say(std::string_view line) {
     const auto parsed = parse_panel_line(line);
     if (const auto* complaint = std::get_if<std::string>(&parsed)) return panel_error(*complaint);
@@ -25,24 +26,45 @@ struct Bench {
 
 struct Said {
   std::string line, answer;
+  Fieldbus bus = Fieldbus::kEthernetIp;
 };
 void PrintTo(const Said& said, std::ostream* out) { *out << said.line; }
 
 class NetworkWord : public testing::TestWithParam<Said> {};
 
 TEST_P(NetworkWord, IsListedUntilFaultsOff) {
-  Bench bench;
+  Bench bench(GetParam().bus);
+  const NetworkFaults healthy = bench.faults;
   EXPECT_EQ(bench.say(GetParam().line), "ok: " + GetParam().answer + "\n");
   EXPECT_EQ(bench.say("faults"), "ok: " + GetParam().line + "\n");
   EXPECT_EQ(bench.say("faults off"), "ok: the network is healthy\n");
   EXPECT_EQ(bench.say("faults"), "ok: nothing is wrong with the network\n");
-  EXPECT_EQ(bench.faults, NetworkFaults{});
+  EXPECT_EQ(bench.faults, healthy);
 }
 
+constexpr Fieldbus kEthercat = Fieldbus::kEthercat;
+
+INSTANTIATE_TEST_SUITE_P(OnAnyBus, NetworkWord,
+                         testing::Values(Said{"unplug", "the cable is out"},
+                                         Said{"power off", "the robot has no power"},
+                                         Said{"freeze", "no I/O is handled"}, Said{"late 12.5", "answers are late"},
+                                         Said{"unplug", "the cable is out", kEthercat},
+                                         Said{"power off", "the robot has no power", kEthercat},
+                                         Said{"freeze", "no I/O is handled", kEthercat},
+                                         Said{"late 0.5", "answers are late", kEthercat}));
+
+INSTANTIATE_TEST_SUITE_P(OnEthercat, NetworkWord,
+                         testing::Values(Said{"cut", "the cable before this robot is cut", kEthercat},
+                                         Said{"lose next 3", "the next frames do not come back", kEthercat},
+                                         Said{"lose every 200", "some frames do not come back", kEthercat},
+                                         Said{"lose mails", "mails of the robot are lost on their way", kEthercat},
+                                         Said{"no mailbox", "mails are not answered", kEthercat},
+                                         Said{"working counter -1", "the working counter is wrong", kEthercat},
+                                         Said{"refuse state 0x0025", "states above PREOP are refused", kEthercat}));
+
 INSTANTIATE_TEST_SUITE_P(
-    AsMeant, NetworkWord,
-    testing::Values(Said{"unplug", "the cable is out"}, Said{"freeze", "no I/O is handled"},
-                    Said{"late 12.5", "answers are late"}, Said{"refuse open 0x0106", "connections are refused"},
+    OnEthernetIp, NetworkWord,
+    testing::Values(Said{"refuse open 0x0106", "connections are refused"},
                     Said{"wrong size 200", "connections of that T->O size are accepted, no others"},
                     Said{"api 20000", "new connections get this interval"},
                     Said{"no socket items", "replies have no socket address items"},
@@ -56,9 +78,10 @@ INSTANTIATE_TEST_SUITE_P(
 class MistypedNetworkWord : public testing::TestWithParam<Said> {};
 
 TEST_P(MistypedNetworkWord, IsAnsweredLikeThis) {
-  Bench bench;
+  Bench bench(GetParam().bus);
+  const NetworkFaults healthy = bench.faults;
   EXPECT_EQ(bench.say(GetParam().line), "error: " + GetParam().answer + "\n");
-  EXPECT_EQ(bench.faults, NetworkFaults{});
+  EXPECT_EQ(bench.faults, healthy);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -71,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"refuse open 0x10000",
              "STATUS: found '0x10000'; expected a whole number from 1 to 65535, or in hex, 0x..."},
         Said{"refuse open 0x", "STATUS: found '0x'; expected a whole number from 1 to 65535, or in hex, 0x..."},
-        Said{"refuse", "'refuse' wants a second word: open; say for example 'refuse open STATUS'"},
+        Said{"refuse", "'refuse' wants a second word: open, state; say for example 'refuse open STATUS'"},
         Said{"wrong size 512", "SIZE: found '512'; expected a whole number from 3 to 511"},
         Said{"api 999", "US: found '999'; expected a whole number from 1000 to 10000000"},
         Said{"foreign address 192.0.2.9",
@@ -83,7 +106,42 @@ INSTANTIATE_TEST_SUITE_P(
              "192.0.2.9:2222"},
         Said{"stop producng", "'stop' does not take 'producng', only producing"},
         Said{"faults of", "'faults' does not take 'of'; say 'faults'"},
-        Said{"dupilcate", "there is no word 'dupilcate', did you mean 'duplicate'?"}));
+        Said{"dupilcate", "there is no word 'dupilcate', did you mean 'duplicate'?"},
+        Said{"lose", "'lose' wants a second word: next, every, mails; say for example 'lose next N'", kEthercat},
+        Said{"lose every -1", "N: found '-1'; expected a whole number from 0 to 1000000", kEthercat},
+        Said{"working counter 4", "N: found '4'; expected a whole number from -3 to 3", kEthercat},
+        Said{"refuse stat 1", "'refuse' does not take 'stat', only open, state", kEthercat},
+        Said{"al error", "'al error' wants CODE; say 'al error CODE'", kEthercat},
+        Said{"al error 0x1001B", "CODE: found '0x1001b'; expected a whole number from 1 to 65535, or in hex, 0x...",
+             kEthercat}));
+
+class MisplacedWord : public testing::TestWithParam<Said> {};
+
+TEST_P(MisplacedWord, IsRefusedWithTheBusItIsFor) {
+  Bench bench(GetParam().bus);
+  const NetworkFaults healthy = bench.faults;
+  EXPECT_EQ(bench.say(GetParam().line), "error: " + GetParam().answer + "\n");
+  EXPECT_EQ(bench.faults, healthy);
+}
+
+const std::string kForEthercat =
+    "that is a word for EtherCAT, and this robot is on EtherNet/IP; 'help' says which words are for it";
+const std::string kForEthernetIp =
+    "that is a word for EtherNet/IP, and this robot is on EtherCAT; 'help' says which words are for it";
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAnotherBus, MisplacedWord,
+    testing::Values(Said{"cut", kForEthercat}, Said{"heal", kForEthercat}, Said{"lose next 1", kForEthercat},
+                    Said{"lose every 2", kForEthercat}, Said{"lose mails", kForEthercat},
+                    Said{"no mailbox", kForEthercat}, Said{"working counter 1", kForEthercat},
+                    Said{"refuse state 0x25", kForEthercat}, Said{"al error 0x1b", kForEthercat},
+                    Said{"emergency 0xff00", kForEthercat}, Said{"refuse open 0x0106", kForEthernetIp, kEthercat},
+                    Said{"wrong size 200", kForEthernetIp, kEthercat}, Said{"api 20000", kForEthernetIp, kEthercat},
+                    Said{"no socket items", kForEthernetIp, kEthercat},
+                    Said{"foreign address 192.0.2.9:2222", kForEthernetIp, kEthercat},
+                    Said{"stop producing", kForEthernetIp, kEthercat}, Said{"duplicate", kForEthernetIp, kEthercat},
+                    Said{"stale sequence", kForEthernetIp, kEthercat}, Said{"corrupt", kForEthernetIp, kEthercat},
+                    Said{"frozen count", kForEthernetIp, kEthercat}, Said{"close tcp", kForEthernetIp, kEthercat}));
 
 TEST(NetworkPanel, SetsWhatItsWordsName) {
   Bench bench;
@@ -98,8 +156,28 @@ TEST(NetworkPanel, SetsWhatItsWordsName) {
 
 TEST(NetworkPanel, EndsSomeFaultsByTheirOwnWords) {
   Bench bench;
-  for (const char* line : {"unplug", "freeze", "late 5", "plug", "thaw", "late 0"}) bench.say(line);
+  for (const char* line : {"unplug", "power off", "freeze", "late 5", "plug", "power on", "thaw", "late 0"}) {
+    EXPECT_THAT(bench.say(line), testing::StartsWith("ok: "));
+  }
   EXPECT_EQ(bench.faults, NetworkFaults{});
+}
+
+TEST(NetworkPanel, EndsSomeFaultsOfEthercatByTheirOwnWords) {
+  Bench bench(kEthercat);
+  const NetworkFaults healthy = bench.faults;
+  for (const char* line : {"cut", "lose every 5", "working counter 1", "heal", "lose every 0", "working counter 0"}) {
+    EXPECT_THAT(bench.say(line), testing::StartsWith("ok: "));
+  }
+  EXPECT_EQ(bench.faults, healthy);
+}
+
+TEST(NetworkPanel, RaisesAlErrorsAndEmergenciesAsOftenAsItIsAskedTo) {
+  Bench bench(kEthercat);
+  EXPECT_EQ(bench.say("al error 0x001B"), "ok: the robot raises an AL error\n");
+  EXPECT_EQ(bench.say("emergency 0xFF00"), "ok: the robot sends an emergency message\n");
+  bench.say("faults off");
+  bench.say("al error 26");
+  EXPECT_EQ(bench.faults.events, (NetworkFaults::Events{0, 2, 1, 26, 0xFF00}));
 }
 
 TEST(NetworkPanel, ClosesTcpAsOftenAsItIsAskedTo) {
@@ -107,7 +185,7 @@ TEST(NetworkPanel, ClosesTcpAsOftenAsItIsAskedTo) {
   EXPECT_EQ(bench.say("close tcp"), "ok: TCP connections are closed\n");
   bench.say("faults off");
   bench.say("close tcp");
-  EXPECT_EQ(bench.faults.tcp_closures, 2u);
+  EXPECT_EQ(bench.faults.events.tcp_closures, 2u);
 }
 
 TEST(NetworkPanel, StillPressesTheButtonsOfTheRobot) {
@@ -126,10 +204,38 @@ TEST(NetworkPanel, RefusesItsWordsToARobotThatIsBuiltIn) {
 
 TEST(NetworkPanel, HelpNamesEveryWord) {
   const std::string text = panel_help();
-  for (const char* word :
-       {"unplug ", "plug ", "freeze ", "thaw ", "late MS ", "refuse open STATUS ", "wrong size SIZE ", "api US ",
-        "no socket items ", "foreign address A.B.C.D:PORT ", "stop producing ", "duplicate ", "stale sequence ",
-        "corrupt ", "frozen count ", "close tcp ", "faults off ", "faults "}) {
+  for (const char* word : {"unplug ",
+                           "plug ",
+                           "freeze ",
+                           "thaw ",
+                           "late MS ",
+                           "refuse open STATUS ",
+                           "wrong size SIZE ",
+                           "api US ",
+                           "no socket items ",
+                           "foreign address A.B.C.D:PORT ",
+                           "stop producing ",
+                           "duplicate ",
+                           "stale sequence ",
+                           "corrupt ",
+                           "frozen count ",
+                           "close tcp ",
+                           "faults off ",
+                           "faults ",
+                           "power off ",
+                           "power on ",
+                           "cut ",
+                           "heal ",
+                           "lose next N ",
+                           "lose every N ",
+                           "lose mails ",
+                           "no mailbox ",
+                           "working counter N ",
+                           "refuse state CODE ",
+                           "al error CODE ",
+                           "emergency CODE ",
+                           "on EtherNet/IP:",
+                           "on EtherCAT:"}) {
     EXPECT_THAT(text, HasSubstr("\n" + std::string(word)));
   }
 }

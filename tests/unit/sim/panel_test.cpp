@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
              "error: 7 is no error code of the Meca500 that any document names; try 1007, joint over limit"},
         Said{"raise error 1007 1012", "error: 'raise error' does not take '1012'; say 'raise error CODE'"},
         Said{"monitoring of", "error: 'monitoring' does not take 'of', only on, off"},
-        Said{"power off", "error: 'power' does not take 'off', only cycle"},
+        Said{"power of", "error: 'power' does not take 'of', only cycle, off, on"},
         Said{"place part", "error: 'place part' wants MM; say 'place part MM'"},
         Said{"place part -1", "error: MM: found '-1'; expected a number from 0 to 1000"},
         Said{"place", "error: 'place' wants a second word: part, obstacle; say for example 'place part MM'"},
