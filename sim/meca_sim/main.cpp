@@ -31,13 +31,10 @@ void start_log(const std::string& level) {
 }
 
 void run(const Arguments& arguments, int stop) {
-  const std::string name = arguments.name;
-  Station station(arguments, [&name](Narrator::Level level, const std::string& text) {
-    spdlog::log(level == Narrator::Level::kInfo ? spdlog::level::info : spdlog::level::warn, "{}: {}", name, text);
+  Station station(arguments, [](Narrator::Level level, const std::string& text) {
+    spdlog::log(level == Narrator::Level::kInfo ? spdlog::level::info : spdlog::level::warn, "{}", text);
   });
-  spdlog::info("{}; EtherNet/IP at {}", describe(arguments), meca::net::to_string(station.own().address));
   station.run(stop, arguments.run_for);
-  spdlog::info("{}: stopped; {}", name, station.summary());
 }
 
 }  // namespace
@@ -54,7 +51,7 @@ int main(int argc, char** argv) {
     run(arguments, stop.get());
     return static_cast<int>(ExitCode::kStopped);
   } catch (const std::exception& error) {
-    spdlog::critical("{}: {}", arguments.name, error.what());
+    spdlog::critical("{}: {}", arguments.names.front(), error.what());
     return static_cast<int>(ExitCode::kNetwork);
   }
 }

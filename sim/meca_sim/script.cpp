@@ -1,5 +1,6 @@
 #include "sim/meca_sim/script.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -38,7 +39,7 @@ std::string in_seconds(Time at) {
 }
 
 // The line, or the complaint about it. `previous`: when the line before happens.
-std::variant<ScriptLine, std::string> parse_line(std::string_view text, Time previous) {
+std::variant<ScriptLine, std::string> parse_line(std::string_view text, Time previous, const ScriptStage& stage) {
   const std::string_view when = take_word(text);
   if (when != "at" && when != "after") {
     return "found " + quoted(when) + "; a line begins with 'at TIME' or 'after TIME', e.g. 'at 2.5s unplug'";
@@ -48,17 +49,21 @@ std::variant<ScriptLine, std::string> parse_line(std::string_view text, Time pre
   if (!parsed_time) {
     return "found " + quoted(time) + " behind '" + std::string(when) + "'; expected a time in s or ms, e.g. 2.5s";
   }
-  ScriptLine line{
-      .at = when == "at" ? *parsed_time : previous + *parsed_time, .words = std::string(trimmed(text)), .request = {}};
-  if (line.at < previous) {
-    return "at " + in_seconds(line.at) + " is before the line above, at " + in_seconds(previous) +
+  const Time at = when == "at" ? *parsed_time : previous + *parsed_time;
+  if (at < previous) {
+    return "at " + in_seconds(at) + " is before the line above, at " + in_seconds(previous) +
            "; lines stand in the order of their times";
   }
-  if (line.words.empty()) return "nothing is said behind the time; add words, e.g. 'unplug'";
-  auto request = parse_panel_line(line.words);
-  if (auto* complaint = std::get_if<std::string>(&request)) return std::move(*complaint);
-  line.request = std::get<PanelRequest>(request);
-  return line;
+  if (trimmed(text).empty()) return "nothing is said behind the time; add words, e.g. 'unplug'";
+  auto event = parse_event(text, stage);
+  if (auto* line = std::get_if<ScriptLine>(&event)) line->at = at;
+  return event;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
 }
 
 }  // namespace
@@ -74,7 +79,26 @@ std::optional<Time> parse_script_time(std::string_view text) {
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(seconds));
 }
 
-Script parse_script(std::string_view text, std::string_view name) {
+std::variant<ScriptLine, std::string> parse_event(std::string_view text, const ScriptStage& stage) {
+  ScriptLine line;
+  std::string_view rest = text;
+  if (const std::string_view first = take_word(rest); first.size() > 1 && first.ends_with(':')) {
+    line.robot = first.substr(0, first.size() - 1);
+    text = rest;
+    if (!stage.robots.empty() && std::ranges::find(stage.robots, line.robot) == stage.robots.end()) {
+      return "there is no robot " + quoted(line.robot) + "; there is " + list_of(stage.robots);
+    }
+  }
+  line.words = trimmed(text);
+  auto request = parse_panel_line(line.words);
+  if (auto* complaint = std::get_if<std::string>(&request)) return std::move(*complaint);
+  line.request = std::get<PanelRequest>(request);
+  const std::string_view complaint = stage.bus ? misplaced(line.request, *stage.bus) : "";
+  if (!complaint.empty()) return quoted(line.words) + ": " + std::string(complaint);
+  return line;
+}
+
+Script parse_script(std::string_view text, std::string_view name, const ScriptStage& stage) {
   Script script;
   Time previous{};
   for (int number = 1; !text.empty(); ++number) {
@@ -83,7 +107,7 @@ Script parse_script(std::string_view text, std::string_view name) {
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::string_view said = trimmed(line.substr(0, line.find('#')));
     if (said.empty()) continue;
-    auto parsed = parse_line(said, previous);
+    auto parsed = parse_line(said, previous, stage);
     if (const auto* complaint = std::get_if<std::string>(&parsed)) {
       script.mistakes.push_back(std::string(name) + ":" + std::to_string(number) + ": " + *complaint);
       continue;

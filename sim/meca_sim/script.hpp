@@ -1,8 +1,8 @@
 // What is to happen to a simulated robot and its network, and when: a text file, one line an event.
 //
 //   # comment
-//   at 2.5s unplug        since the program was ready
-//   after 500ms plug      since the line before
+//   at 2.5s unplug           since the program was ready
+//   after 500ms arm2: plug   since the line before; only the robot of this name
 //
 // The words are those of the control socket (sim/panel.hpp).
 #pragma once
@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "sim/panel.hpp"
@@ -17,9 +18,16 @@
 namespace meca::sim {
 
 struct ScriptLine {
-  Time at{};  // since the program was ready
+  Time at{};          // since the program was ready
+  std::string robot;  // empty: all of them
   std::string words;
   PanelRequest request;
+};
+
+// What there is for a line to speak of; words and names of nobody are mistakes.
+struct ScriptStage {
+  std::optional<Fieldbus> bus;      // nothing: any
+  std::vector<std::string> robots;  // empty: any
 };
 
 struct Script {
@@ -28,7 +36,10 @@ struct Script {
 };
 
 // `name`: of the file, for the mistakes.
-Script parse_script(std::string_view text, std::string_view name);
+Script parse_script(std::string_view text, std::string_view name, const ScriptStage& stage = {});
+
+// "arm2: unplug", "unplug": a line without its time; or what is wrong with it, without full stop.
+std::variant<ScriptLine, std::string> parse_event(std::string_view text, const ScriptStage& stage = {});
 
 // "2.5s", "500ms", "0s": not negative, at most a year.
 std::optional<Time> parse_script_time(std::string_view text);

@@ -3,102 +3,112 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sim/meca_sim/ethercat_network.hpp"
+#include "sim/meca_sim/ethernet_ip_network.hpp"
 #include "transports/net/clock.hpp"
 
 namespace meca::sim {
 namespace {
 
+using Level = Narrator::Level;
+
 // Where `meca-ctl sim` looks unless it is told otherwise.
 constexpr int kDomain = 0;
 constexpr std::string_view kTopicPrefix = "meca500/";
 
-ethernet_ip::AdapterSettings with_address(ethernet_ip::AdapterSettings settings, const net::Interface& own) {
-  settings.address = own.address;
-  settings.netmask = own.netmask;
-  return settings;
+std::unique_ptr<Network> open_network(const Arguments& a, const std::vector<Narrator::Say>& say) {
+  const Time now = net::monotonic();
+  switch (a.bus) {
+    case Fieldbus::kEthernetIp:
+      return std::make_unique<EthernetIpNetwork>(a.model, a.adapter, a.on_loss, find_own_interface(a.bind), now,
+                                                 say.front());
+    case Fieldbus::kEthercat: {
+      std::vector<EthercatSegment::Member> members;
+      for (std::size_t i = 0; i < a.names.size(); ++i) members.push_back({model_of(a, i), device_of(a, i)});
+      return std::make_unique<EthercatNetwork>(members, a.on_loss, a.interface, a.redundant_interface, now, say);
+    }
+  }
+  return nullptr;
 }
 
-std::string list_of(const std::vector<net::Interface>& interfaces) {
-  std::string text;
-  for (const auto& i : interfaces) text += (text.empty() ? "" : ", ") + i.name + " " + net::to_string(i.address);
-  return text;
+// A path of its own for each of several robots: in the directory that was named.
+std::filesystem::path control_path(const Arguments& arguments, const std::string& name) {
+  if (arguments.control == "auto") return transports::default_control_socket(kDomain, kTopicPrefix, name);
+  const std::filesystem::path path = arguments.control;
+  return arguments.names.size() == 1 ? path : path / (name + ".sock");
 }
 
 }  // namespace
 
-net::Interface find_own_interface(const std::string& bind) {
-  const auto interfaces = net::ipv4_interfaces();
-  const auto address = net::parse_ipv4(bind);
-  const auto found = std::ranges::find_if(interfaces, [&](const net::Interface& i) {
-    const bool loopback = i.address >> 24 == 127;  // the whole of 127/8 is this machine's
-    if (!address) return i.name == bind;
-    return loopback ? ((*address ^ i.address) & i.netmask) == 0 : *address == i.address;
-  });
-  if (found == interfaces.end()) {
-    throw std::runtime_error("--bind: '" + bind + "' is neither an address nor an interface of this machine; it has " +
-                             list_of(interfaces));
+Station::Station(const Arguments& arguments, Narrator::Say say) : say_(std::move(say)), script_(arguments.script) {
+  std::vector<Narrator::Say> sayings;
+  for (const std::string& name : arguments.names) sayings.push_back(saying(name));
+  network_ = open_network(arguments, sayings);
+  for (std::size_t i = 0; i < arguments.names.size(); ++i) {
+    say_(Level::kInfo, describe(arguments, i) + "; " + network_->place(i));
+    open_panel(arguments, seats_.emplace_back(Seat{arguments.names[i], nullptr}));
   }
-  net::Interface own = *found;
-  if (address) own.address = *address;
-  return own;
 }
 
-Station::Station(const Arguments& arguments, Narrator::Say say)
-    : say_(std::move(say)),
-      own_(find_own_interface(arguments.bind)),
-      robot_(arguments.model, with_address(arguments.adapter, own_), arguments.on_loss, net::monotonic()),
-      sockets_(robot_, own_),
-      narrator_(robot_, say_),
-      script_(arguments.script),
-      begin_(net::monotonic()) {
-  open_panel(arguments);
+Narrator::Say Station::saying(const std::string& name) const {
+  return [say = say_, name](Level level, const std::string& text) { say(level, name + ": " + text); };
 }
 
-void Station::open_panel(const Arguments& arguments) {
+void Station::open_panel(const Arguments& arguments, Seat& seat) {
   if (arguments.control == "off") return;
   try {
-    std::filesystem::path path = arguments.control;
-    if (arguments.control == "auto") {
-      path = transports::default_control_socket(kDomain, kTopicPrefix, arguments.name);
-    }
-    panel_ = std::make_unique<transports::ControlPanel>(std::move(path));
-    say_(Narrator::Level::kInfo, "buttons and faults are at " + panel_->socket().string());
+    seat.panel = std::make_unique<transports::ControlPanel>(control_path(arguments, seat.name));
+    say_(Level::kInfo, seat.name + ": buttons and faults are at " + seat.panel->socket().string());
   } catch (const std::runtime_error& error) {
-    say_(Narrator::Level::kWarning,
-         "no control socket, buttons cannot be pressed; another --name or --control may help: " +
-             std::string(error.what()));
+    say_(Level::kWarning, seat.name +
+                              ": no control socket, buttons cannot be pressed; another --name or --control may help: " +
+                              std::string(error.what()));
   }
 }
 
 void Station::follow_script(Time now) {
   for (; next_line_ < script_.size() && begin_ + script_[next_line_].at <= now; ++next_line_) {
     const ScriptLine& line = script_[next_line_];
-    PanelAnswer answer;
-    apply(line.request, robot_.robot(), &robot_.faults(), answer);
-    std::string text = to_text(answer);
-    text.pop_back();
-    say_(Narrator::Level::kInfo, "'" + line.words + "': " + text);
+    for (std::size_t i = 0; i < seats_.size(); ++i) {
+      if (!line.robot.empty() && line.robot != seats_[i].name) continue;
+      PanelAnswer answer;
+      apply(line.request, network_->robot(i), &network_->faults(i), answer);
+      std::string text = to_text(answer);
+      text.pop_back();
+      say_(Level::kInfo, seats_[i].name + ": '" + line.words + "': " + text);
+    }
   }
 }
 
+void Station::exchange(Time now) {
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    if (seats_[i].panel) seats_[i].panel->serve(network_->robot(i), &network_->faults(i));
+  }
+  network_->exchange(now);
+  for (std::size_t i = 0; i < seats_.size(); ++i) network_->narrator(i).look(now);
+}
+
+void Station::tell_trouble() {
+  if (network_->trouble() == trouble_) return;
+  trouble_ = network_->trouble();
+  if (!trouble_.empty()) say_(Level::kWarning, seats_.front().name + ": " + trouble_);
+}
+
 void Station::run(int stop, std::optional<Time> run_for) {
-  net::Poller poller(1 + EthernetIpSockets::kSlots);
+  net::Poller poller(1 + network_->slots());
   poller.watch(0, stop);
   begin_ = net::monotonic();
   const Time end = run_for ? begin_ + *run_for : Time::max();
   for (Time now = begin_; now < end; now = net::monotonic()) {
     follow_script(now);
-    if (panel_) panel_->serve(robot_.robot(), &robot_.faults());
-    robot_.advance(now);
-    sockets_.exchange(now);
-    narrator_.look(now);
-    if (sockets_.trouble() != trouble_) {
-      trouble_ = sockets_.trouble();
-      if (!trouble_.empty()) say_(Narrator::Level::kWarning, trouble_);
-    }
-    sockets_.wait_for(poller, 1, now);
-    poller.wait(std::min({robot_.next_event(), sockets_.next_event(now), end}));
-    if (poller.ready(0)) return;
+    exchange(now);
+    tell_trouble();
+    network_->wait_for(poller, 1, now);
+    poller.wait(std::min(network_->next_event(now), end));
+    if (poller.ready(0)) break;
+  }
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    say_(Level::kInfo, seats_[i].name + ": stopped; " + network_->narrator(i).summary());
   }
 }
 

@@ -1,43 +1,43 @@
-// A simulated robot at work: model, sockets, control socket, script, in one thread.
+// Simulated robots at work: models, sockets, control sockets, script, in one thread.
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "sim/meca_sim/arguments.hpp"
-#include "sim/meca_sim/ethernet_ip_sockets.hpp"
-#include "sim/meca_sim/narrator.hpp"
+#include "sim/meca_sim/network.hpp"
 #include "transports/panel/control_panel.hpp"
 
 namespace meca::sim {
 
-// `bind`: an address of this machine or the name of an interface. Throws std::runtime_error with a sentence.
-net::Interface find_own_interface(const std::string& bind);
-
 class Station {
  public:
-  // Opens everything. Throws std::runtime_error with a sentence when the network cannot be opened; without a control
-  // socket it works all the same.
+  // Opens everything, and says of each robot who and where it is. Throws std::runtime_error with a sentence when the
+  // network cannot be opened; without a control socket it works all the same.
   Station(const Arguments& arguments, Narrator::Say say);
 
-  // Until `stop` (a file descriptor) can be read from, or the time is over.
+  // Until `stop` (a file descriptor) can be read from, or the time is over; then says what was counted.
   void run(int stop, std::optional<Time> run_for);
-  std::string summary() const { return narrator_.summary(); }
-  net::Interface own() const { return own_; }
 
  private:
-  void open_panel(const Arguments& arguments);
+  struct Seat {
+    std::string name;
+    std::unique_ptr<transports::ControlPanel> panel;
+  };
+
+  void open_panel(const Arguments& arguments, Seat& seat);
   void follow_script(Time now);
+  void exchange(Time now);
+  void tell_trouble();
+  Narrator::Say saying(const std::string& name) const;  // its name in front
 
   Narrator::Say say_;
-  net::Interface own_;
-  EthernetIpRobot robot_;
-  EthernetIpSockets sockets_;
-  Narrator narrator_;
-  std::unique_ptr<transports::ControlPanel> panel_;
+  std::unique_ptr<Network> network_;
+  std::vector<Seat> seats_;  // of the robots of the network, in its order
   std::vector<ScriptLine> script_;
   std::size_t next_line_ = 0;
-  Time begin_;
+  Time begin_{};
   std::string trouble_;
 };
 

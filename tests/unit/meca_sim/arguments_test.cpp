@@ -11,6 +11,7 @@ namespace meca::sim {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 Arguments parse(std::vector<const char*> words) {
@@ -134,7 +135,7 @@ TEST(SimArguments, MistakesAreSaidTogetherWithAGuess) {
                       "unplgu",
                       "--faults",
                       "/nowhere/faults.txt"}),
-            "meca-sim: --protocol: found 'ethernetip'; this version speaks ethernet_ip only; did you mean "
+            "meca-sim: --protocol: found 'ethernetip'; expected one of ethernet_ip, ethercat; did you mean "
             "'ethernet_ip'?\n"
             "meca-sim: --name: found 'arm 1'; expected 1 to 32 letters, digits, '-' or '_'\n"
             "meca-sim: --firmware: found '12.1'; expected a version of the firmware from 9.0 to 11.x, e.g. 11.3\n"
@@ -155,7 +156,109 @@ TEST(SimArguments, MistakesAreSaidTogetherWithAGuess) {
 }
 
 TEST(SimArguments, BusesOfLaterVersionsAreRefusedWithWhatThereIs) {
-  EXPECT_THAT(mistakes({"--protocol", "ethercat"}), HasSubstr("'ethercat'; this version speaks ethernet_ip only\n"));
+  EXPECT_THAT(mistakes({"--protocol", "profinet"}), HasSubstr("'profinet'; expected one of ethernet_ip, ethercat\n"));
+}
+
+TEST(SimArguments, OfEthercatAreTaken) {
+  const Arguments a = parse({"--protocol",
+                             "ethercat",
+                             "--interface",
+                             "eth1",
+                             "--redundant-interface",
+                             "eth2",
+                             "--count",
+                             "3",
+                             "--alias",
+                             "100",
+                             "--firmware",
+                             "9.3",
+                             "--serial",
+                             "4711",
+                             "--seed",
+                             "7",
+                             "--foreign",
+                             "arm2",
+                             "--reply-delay",
+                             "2.5",
+                             "--clock-ppm",
+                             "20",
+                             "--no-lrw",
+                             "--old-sync-manager-types"});
+  ASSERT_FALSE(a.answer) << a.answer->text;
+  EXPECT_EQ(a.bus, Fieldbus::kEthercat);
+  EXPECT_EQ(a.interface, "eth1");
+  EXPECT_EQ(a.redundant_interface, "eth2");
+  EXPECT_THAT(a.names, ElementsAre("arm1", "arm2", "arm3"));
+  EXPECT_EQ(describe(a, 2), "arm3: simulated Meca500 R4, firmware 9.3, serial number 4713");
+  EXPECT_EQ(model_of(a, 2).seed, 9u);
+
+  const ethercat::DeviceSettings last = device_of(a, 2);
+  EXPECT_EQ(last.layout, image::Layout::kFirmware9);
+  EXPECT_EQ(last.firmware, "9.3.0.1");
+  EXPECT_EQ(last.alias, 102);
+  EXPECT_EQ(last.serial, 4713u);
+  EXPECT_EQ(last.product, ethercat::kMeca500Product);
+  EXPECT_EQ(last.mailbox_reply, 2500us);
+  EXPECT_EQ(last.esc.clock_ppm, 20);
+  EXPECT_NE(last.esc.features & ethercat::kFeatureNoLrw, 0);
+  EXPECT_TRUE(last.old_sync_manager_types);
+
+  const ethercat::DeviceSettings foreign = device_of(a, 1);
+  EXPECT_NE(foreign.vendor, ethercat::kMecademicVendor);
+  EXPECT_EQ(foreign.esc.clock_ppm, -20);
+  EXPECT_NE(foreign.esc.clock_start, last.esc.clock_start);
+}
+
+TEST(SimArguments, WithoutAnAliasNoRobotHasOne) {
+  const Arguments a = parse({"--protocol", "ethercat", "--interface", "eth1", "--count", "2"});
+  EXPECT_EQ(device_of(a, 1).alias, 0);
+}
+
+TEST(SimArguments, SeveralRobotsCountOnFromTheirName) {
+  const auto names = [](const char* name) {
+    return parse({"--protocol", "ethercat", "--interface", "eth1", "--count", "2", "--name", name}).names;
+  };
+  EXPECT_THAT(names("arm9"), ElementsAre("arm9", "arm10"));
+  EXPECT_THAT(names("left"), ElementsAre("left1", "left2"));
+  EXPECT_THAT(names("7"), ElementsAre("7", "8"));
+  EXPECT_THAT(parse({"--name", "left"}).names, ElementsAre("left"));
+}
+
+TEST(SimArguments, MistakesOfEthercatAreSaidTogether) {
+  EXPECT_EQ(mistakes({"--protocol", "ethercat", "--count", "33", "--alias", "65536", "--foreign", "arm7",
+                      "--reply-delay", "soon", "--clock-ppm", "2000"}),
+            "meca-sim: --interface is missing: the network interface that the master's cable is in, e.g. --interface "
+            "eth1\n"
+            "meca-sim: --count: found '33'; expected a number from 1 to 32\n"
+            "meca-sim: --alias: found '65536'; expected a number from 0 to 65535\n"
+            "meca-sim: --foreign: there is no robot 'arm7'; the first is arm1, the last arm1\n"
+            "meca-sim: --reply-delay: found 'soon'; expected milliseconds from 0 to 60000\n"
+            "meca-sim: --clock-ppm: found '2000'; expected a number from -1000 to 1000\n"
+            "meca-sim --help shows the options and examples\n");
+  EXPECT_THAT(mistakes({"--protocol", "ethercat", "--interface", "eth1", "--redundant-interface", "eth1"}),
+              HasSubstr("--redundant-interface: found 'eth1', which is --interface already; a ring has two ends\n"));
+  EXPECT_THAT(mistakes({"--protocol", "ethercat", "--interface", "eth1", "--count", "4", "--alias", "65533"}),
+              HasSubstr("--alias: found '65533'; expected a number from 0 to 65532\n"));
+}
+
+TEST(SimArguments, OptionsOfTheOtherBusAreRefused) {
+  EXPECT_EQ(mistakes({"--protocol", "ethercat", "--interface", "eth1", "--bind", "eth1", "--lenient-rpi"}),
+            "meca-sim: --bind is an option of --protocol ethernet_ip, and this is ethercat\n"
+            "meca-sim: --lenient-rpi is an option of --protocol ethernet_ip, and this is ethercat\n"
+            "meca-sim --help shows the options and examples\n");
+  EXPECT_EQ(mistakes({"--interface", "eth1", "--count", "2"}),
+            "meca-sim: --interface is an option of --protocol ethercat, and this is ethernet_ip\n"
+            "meca-sim: --count is an option of --protocol ethercat, and this is ethernet_ip\n"
+            "meca-sim --help shows the options and examples\n");
+}
+
+TEST(SimArguments, FaultsOfTheOtherBusOrOfNobodyAreRefused) {
+  EXPECT_EQ(
+      mistakes({"--fault", "cut", "--fault", "arm2: unplug"}),
+      "meca-sim: --fault: 'cut': that is a word for EtherCAT, and this robot is on EtherNet/IP; 'help' says which "
+      "words are for it\n"
+      "meca-sim: --fault: there is no robot 'arm2'; there is arm1\n"
+      "meca-sim --help shows the options and examples\n");
 }
 
 TEST(SimArguments, OptionsThatAreMistypedAreGuessed) {

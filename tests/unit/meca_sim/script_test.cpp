@@ -58,6 +58,26 @@ TEST(Script, SaysEveryMistakeAtOnceWithItsLine) {
   EXPECT_THAT(events(script), ElementsAre(Pair(5s, "plug")));
 }
 
+TEST(Script, MayNameTheRobotItIsFor) {
+  const Script script = parse_script("at 1s arm2: unplug\nat 1s plug\n", "f", {Fieldbus::kEthercat, {"arm1", "arm2"}});
+  EXPECT_THAT(script.mistakes, IsEmpty());
+  ASSERT_THAT(events(script), ElementsAre(Pair(1s, "unplug"), Pair(1s, "plug")));
+  EXPECT_EQ(script.lines[0].robot, "arm2");
+  EXPECT_EQ(script.lines[1].robot, "");
+}
+
+TEST(Script, RefusesRobotsThatThereAreNotAndWordsOfAnotherBus) {
+  const Script script =
+      parse_script("at 1s arm3: unplug\nat 1s arm2:\nat 1s close tcp\n", "f", {Fieldbus::kEthercat, {"arm1", "arm2"}});
+  EXPECT_THAT(
+      script.mistakes,
+      ElementsAre("f:1: there is no robot 'arm3'; there is arm1, arm2",
+                  "f:2: the line is empty; 'help' lists the words",
+                  "f:3: 'close tcp': that is a word for EtherNet/IP, and this robot is on EtherCAT; 'help' says "
+                  "which words are for it"));
+  EXPECT_THAT(script.lines, IsEmpty());
+}
+
 TEST(Script, TakesTimesInSecondsAndMilliseconds) {
   EXPECT_EQ(parse_script_time("2.5s"), 2500ms);
   EXPECT_EQ(parse_script_time("0s"), 0ms);

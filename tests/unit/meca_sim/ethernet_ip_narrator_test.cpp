@@ -1,5 +1,5 @@
-// What meca-sim tells of its connection.
-#include "sim/meca_sim/narrator.hpp"
+// What meca-sim tells of a connection over EtherNet/IP.
+#include "sim/meca_sim/ethernet_ip_narrator.hpp"
 
 #include <gmock/gmock.h>
 
@@ -20,10 +20,10 @@ struct Listener {
   Narrator::Say say = [this](Narrator::Level, const std::string& text) { said.push_back(text); };
 };
 
-TEST(Narrator, TellsTheLifeOfAConnection) {
+TEST(EthernetIpNarrator, TellsTheLifeOfAConnection) {
   Cell cell;
   Listener listener;
-  Narrator narrator(cell.robot, listener.say);
+  EthernetIpNarrator narrator(cell.robot, listener.say);
   ASSERT_TRUE(cell.connect());
   cell.run(50ms);
   narrator.look(cell.now);
@@ -43,10 +43,10 @@ TEST(Narrator, TellsTheLifeOfAConnection) {
   EXPECT_THAT(listener.take(), ElementsAre("the robot is away, starting up"));
 }
 
-TEST(Narrator, TellsOnceOfPacketsThatAreDroppedWithoutAnAnswer) {
+TEST(EthernetIpNarrator, TellsOnceOfPacketsThatAreDroppedWithoutAnAnswer) {
   Cell cell;
   Listener listener;
-  Narrator narrator(cell.robot, listener.say);
+  EthernetIpNarrator narrator(cell.robot, listener.say);
   for (int i = 0; i < 3; ++i) {
     cell.robot.io_received({Cell::kHost, 2222}, std::array<std::byte, 5>{}, cell.now);
     narrator.look(cell.now);
@@ -57,22 +57,22 @@ TEST(Narrator, TellsOnceOfPacketsThatAreDroppedWithoutAnAnswer) {
   EXPECT_THAT(narrator.summary(), HasSubstr("3 malformed"));
 }
 
-TEST(Narrator, TellsOfRefusals) {
+TEST(EthernetIpNarrator, TellsOfRefusals) {
   Cell cell;
   Listener listener;
-  Narrator narrator(cell.robot, listener.say);
+  EthernetIpNarrator narrator(cell.robot, listener.say);
   cell.robot.faults().refuse_open = 0x0106;
   ASSERT_TRUE(cell.until([&] { return cell.host.counters().refusals == 1; }));
   narrator.look(cell.now);
   EXPECT_THAT(listener.take(), ElementsAre(HasSubstr("was refused, 1 until now")));
 }
 
-TEST(Narrator, TellsOfRulesThatTheHostBreaksAtMostOnceASecond) {
+TEST(EthernetIpNarrator, TellsOfRulesThatTheHostBreaksAtMostOnceASecond) {
   RobotOptions model = Cell::quick();
   model.homing_time = 1h;
   Cell cell(ConnectionLoss::kStop, model);
   Listener listener;
-  Narrator narrator(cell.robot, listener.say);
+  EthernetIpNarrator narrator(cell.robot, listener.say);
   ASSERT_TRUE(cell.connect());
   cell.outputs.robot_control.activate = true;
   ASSERT_TRUE(cell.until([&] { return cell.inputs().robot_status.activated; }));
