@@ -1,7 +1,12 @@
 #!/usr/bin/env bash
 # ./meca run: the bridge on the built-in robot, and what to type next. Arguments go to meca-bridge.
 # ./meca run ethernet_ip: the bridge and meca-sim as two programs that speak EtherNet/IP. Arguments go to meca-sim.
+# ./meca run ethercat: the same over EtherCAT with three robots (run_ethercat.sh).
 . scripts/common.sh
+if [ "${1:-}" = ethercat ]; then
+  shift
+  exec scripts/run_ethercat.sh "$@"
+fi
 need build
 
 what_to_type() {
