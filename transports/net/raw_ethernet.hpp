@@ -1,5 +1,5 @@
-// Raw Ethernet frames of one EtherType on one network interface (packet(7)): never blocks and, after it was opened, never
-// allocates. Needs CAP_NET_RAW.
+// Raw Ethernet frames of one EtherType on one network interface (packet(7)): never blocks and, after it was opened,
+// never allocates. Needs CAP_NET_RAW.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class RawEthernet {
   static constexpr std::size_t kLongestFrame = 1514;  // bytes, header included, without FCS and VLAN tag
 
   RawEthernet() = default;
-  // Throws std::runtime_error with a sentence: no such interface, not Ethernet, frames too short, no right. An interface
-  // that is down is no error: link() says so, and frames pass once it is up.
+  // Throws std::runtime_error with a sentence: no such interface, not Ethernet, frames too short, no right. An
+  // interface that is down is no error: link() says so, and frames pass once it is up.
   RawEthernet(const std::string& interface, std::uint16_t ether_type);
 
   // kNoCarrier: no cable, or nobody at its other end. kDown: switched off here ("ip link set eth1 up"). kGone: the
