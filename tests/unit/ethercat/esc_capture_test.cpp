@@ -1,5 +1,5 @@
 // Start-up of independent masters with independent devices, played to this ESC: the same requests have to give the same
-// answers. Recorded between SOEM, ethercrab, libethercat, KickCAT and SOES (captures/*.txt); no robot was there.
+// answers. Recorded between SOEM, ethercrab, libethercat, KickCAT and SOES (tests/captures/ethercat/esc); no robot was there.
 #include <fstream>
 #include <sstream>
 
@@ -22,7 +22,7 @@ struct Line {
 };
 
 std::vector<Line> load(const std::string& name) {
-  std::ifstream file(std::string(MECA_SOURCE_DIR) + "/tests/unit/ethercat/captures/" + name + ".txt");
+  std::ifstream file(std::string(MECA_SOURCE_DIR) + "/tests/captures/ethercat/esc/" + name + ".txt");
   std::vector<Line> lines;
   for (std::string text; std::getline(file, text);) {
     if (text.starts_with('#')) continue;
