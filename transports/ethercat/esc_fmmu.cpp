@@ -90,9 +90,10 @@ void EscState::decode_fmmu(unsigned n) noexcept {
 unsigned EscState::exchange_logical(std::uint32_t address, std::span<std::byte> data, bool reads, bool writes,
                                     Time now) noexcept {
   bool has_read = false, has_written = false;
+  const auto mapped = fmmus;  // as they were when the datagram came, though it may write to their own registers
   // Writing first takes the bytes as they came in. An FMMU of both types on plain RAM reads what it has just written;
   // a real ESC would exchange (inferred; no master does it).
-  for (const Fmmu& f : fmmus) {
+  for (const Fmmu& f : mapped) {
     if (!writes || !f.active || !f.writes) continue;
     const Overlap part = overlap(f, address, data.size());
     if (part.empty()) continue;
@@ -100,7 +101,7 @@ unsigned EscState::exchange_logical(std::uint32_t address, std::span<std::byte> 
                                            data.subspan(part.from - address, part.to - part.from), std::byte{0xFF}, now)
                                    : write_bits(*this, f, part, address, data, now);
   }
-  for (const Fmmu& f : fmmus) {
+  for (const Fmmu& f : mapped) {
     if (!reads || !f.active || !f.reads) continue;
     const Overlap part = overlap(f, address, data.size());
     if (part.empty()) continue;

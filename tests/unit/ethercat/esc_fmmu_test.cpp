@@ -202,6 +202,16 @@ TEST_F(EscFmmu, ARunThatEndsBeforeItBeginsMapsNothing) {
   EXPECT_EQ(lrw(0x10, hex("FF")).wkc, 0u);
 }
 
+// The fuzzer's: bit by bit onto the FMMU's own registers, which then pointed out of the datagram in the middle of it.
+TEST_F(EscFmmu, AnFmmuThatIsMappedOntoItselfServesTheDatagramAsItWasBefore) {
+  map_bits(0, 0x10, 16, 0, 6, reg::fmmu(0), 0, 2);
+  auto moved = read(reg::fmmu(0), 16).data;
+  moved[1] = moved[2] = moved[3] = std::byte{0x7F};  // its logical address
+  EXPECT_EQ(send(Command::kLwr, 0x10, moved).wkc, 1u);
+  EXPECT_EQ(read(reg::fmmu(0), 16).data, moved);
+  EXPECT_EQ(send(Command::kLwr, 0x10, moved).wkc, 0u);
+}
+
 // ---- A fault for tests of masters
 
 TEST_F(EscFmmu, AWorkingCounterFaultCountsInLogicalDatagramsOfTheDeviceOnly) {
