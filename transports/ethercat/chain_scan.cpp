@@ -12,6 +12,9 @@ namespace {
 constexpr unsigned kMostFailures = 20;
 // Service frames stay short, so that they do not stand in a cyclic one's way for long.
 constexpr std::size_t kMostBytes = 640, kLargestRequest = 16;
+// Logical addresses that another master gave a device, or we did before a restart, are another robot's now: it would
+// take that one's outputs for its own. So the FMMUs of every new device are cleared first, also of those left alone.
+constexpr std::uint16_t kAllFmmus = 8 * reg::kFmmuSize;
 
 std::uint16_t u16(Bytes data) noexcept {
   wire::Reader in(data);
@@ -116,6 +119,11 @@ bool ChainScan::add_reading(InFlight& frame, std::size_t item, Time now) noexcep
                   .purpose = {Purpose::Kind::kScan, generation_, static_cast<std::uint16_t>(item)}};
   std::uint16_t ado = 0;
   switch (probe.ask) {
+    case Ask::kMapping:
+      request.command = Command::kFpwr;
+      request.size = kAllFmmus;
+      ado = reg::kFmmu;
+      break;
     case Ask::kFeatures:
       ado = reg::kFeatures;
       break;
@@ -206,6 +214,9 @@ void ChainScan::answered_reading(std::size_t item, std::uint16_t working_counter
   }
   probe.failures = 0;
   switch (probe.ask) {
+    case Ask::kMapping:
+      probe.ask = Ask::kFeatures;
+      break;
     case Ask::kFeatures:
       device.features = u16(data);
       probe.ask = Ask::kAlias;
@@ -264,7 +275,7 @@ void ChainScan::next_step(Time now) noexcept {
       begin(Step::kRead);
       for (std::size_t i = 0; i < next_devices_.size(); ++i) {
         Device& device = next_devices_[i];
-        probes_[i].ask = device.life == 0 ? Ask::kFeatures : Ask::kDlStatus;
+        probes_[i].ask = device.life == 0 ? Ask::kMapping : Ask::kDlStatus;
         if (device.life == 0) device.life = ++lives_;
       }
       break;

@@ -1,6 +1,6 @@
 // Looks through the chain: counts the devices, knows those again that still have the station address it gave them,
-// gives the others one, and reads who they are. A machine without I/O and without clock that wants datagrams and takes
-// answers. No allocation after construction.
+// gives the others one, takes the mapping of other masters from them, and reads who they are. A machine without I/O and
+// without clock that wants datagrams and takes answers. No allocation after construction.
 //
 // By position only what a device has under its address 0010h is read, and only a device that has none of ours is
 // written to. So a running device is never touched, whoever comes, goes or moves around it.
@@ -51,7 +51,7 @@ class ChainScan {
 
  private:
   enum class Step : std::uint8_t { kIdle, kCount, kAddresses, kOthers, kAssign, kRead };
-  enum class Ask : std::uint8_t { kFeatures, kDlStatus, kAlias, kSii, kDone };
+  enum class Ask : std::uint8_t { kMapping, kFeatures, kDlStatus, kAlias, kSii, kDone };
   struct Probe {  // of a position in kAddresses, else of a device
     bool answered = false, asked = false;
     std::uint16_t address = 0;

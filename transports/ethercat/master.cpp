@@ -165,6 +165,10 @@ void Master::link_changed(Port port, bool up, Time now) noexcept {
     state.ring_open = true;
     state.in_flight.await_one_copy();
   }
+  if (!state.ports[0] && state.scan.running()) {
+    state.scan.stop();
+    state.scan_wanted = true;
+  }
   if (state.any_port()) {
     if (!state.reached) state.heard = now;  // time to answer
     if (!had_port) {

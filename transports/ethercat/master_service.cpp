@@ -24,8 +24,11 @@ Bytes MasterState::service_frame(Time now) noexcept {
   look_after_scan(now);
   for (Robot& robot : robots) robot.station.tick(now);
   if (!in_flight.begin(InFlight::Use::kService, cycle)) return {};
-  const bool by_position = settings.redundant && scan.running() && scan.by_position();
-  if (scan.running()) scan.add_to(in_flight, now);
+  // Every other frame only: the scan may ask in vain for long, and the robots are not to wait for it.
+  const bool alone = settings.redundant && scan.by_position();
+  const bool by_position = alone && both_ports_in_service;
+  both_ports_in_service = !by_position;
+  if (by_position || !alone) scan.add_to(in_flight, now);
   if (!by_position) {
     clocks.add_to(in_flight, now);
     add_robots(now);
@@ -38,7 +41,8 @@ Bytes MasterState::service_frame(Time now) noexcept {
 
 void MasterState::look_after_scan(Time now) noexcept {
   if (closing) return;
-  if (scan_wanted && !scan.running() && reached && now >= next_scan) {
+  // Of a ring without the primary port positions count from the other end: what is known is kept as it is.
+  if (scan_wanted && !scan.running() && reached && ports[0] && now >= next_scan) {
     scan_wanted = false;
     scanned_count = count;
     ++counters.scans;
@@ -154,7 +158,7 @@ Time MasterState::next_service_event() const noexcept {
   if (service_in_flight || !any_port()) return Time::max();  // its time-out comes from what is in flight
   Time wanted = Time::max();
   if (scan.running() || clocks.running()) wanted = next_service;
-  if (scan_wanted && reached && !closing) wanted = std::min(wanted, next_scan);
+  if (scan_wanted && reached && ports[0] && !closing) wanted = std::min(wanted, next_scan);
   for (const Robot& robot : robots) {
     wanted = std::min(wanted, robot.station.next_event());
     if (robot.life == 0) continue;

@@ -115,7 +115,7 @@ struct MasterState {
   bool ring_open = false;
 
   // Service
-  bool service_in_flight = false, both_ports = true, scan_wanted = false, closing = false;
+  bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;
   Time next_service{}, next_scan{};
   unsigned service_losses = 0;
   std::size_t first_robot = 0;

@@ -90,6 +90,28 @@ TEST(MasterRedundancy, ARobotPowerCycledBeforeTheBreakOfAnOpenRingComesBack) {
   EXPECT_EQ(segment.master().counters(2).losses, 0u);
 }
 
+// The scan cannot go by positions here: nobody waits for it.
+TEST(MasterRedundancy, WithoutThePrimaryCableRobotsStillRecoverAndANewOneComesWithIt) {
+  for (const bool told : {true, false}) {
+    Segment segment(ring_of(3));
+    ASSERT_TRUE(segment.start());
+    segment.chain().cut(0);
+    if (told) segment.set_link(Port::kPrimary, false);
+    segment.run(50ms);
+    segment.device(0).power_cycle(segment.now());
+    segment.device(2).raise_al_error(0x001B, segment.now());
+    segment.run(3s);
+    EXPECT_TRUE(segment.master().station(1).operational());
+    EXPECT_TRUE(segment.master().station(2).operational()) << segment.master().trouble(2);
+    EXPECT_FALSE(segment.device(0).operational());
+    segment.chain().heal(0);
+    segment.set_link(Port::kPrimary, true);
+    segment.run(50ms);
+    ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+    EXPECT_EQ(segment.master().counters(1).losses, 0u);
+  }
+}
+
 TEST(MasterRedundancy, OneCopyLostIsCountedAndTheOtherTaken) {
   Segment segment(ring_of(2));
   ASSERT_TRUE(segment.start());

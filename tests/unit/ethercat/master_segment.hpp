@@ -44,7 +44,9 @@ class Segment {
     }
   }
 
-  Master& master() { return master_; }
+  Master& master() { return *asked_; }
+  // Another master takes the first one's place, as after a restart; it outlives the segment's last cycle.
+  void go_on_with(Master& other) { asked_ = &other; }
   Device& device(std::size_t i) { return *devices_[i]; }
   Chain& chain() { return chain_; }
   Time now() const { return now_; }
@@ -65,7 +67,7 @@ class Segment {
   }
   bool all_operational() {
     for (std::size_t i = 0; i < settings_.robots.size(); ++i)
-      if (!master_.station(i).operational()) return false;
+      if (!asked_->station(i).operational()) return false;
     return true;
   }
   bool start(Time within = 20s) {
@@ -75,7 +77,7 @@ class Segment {
   void pause(Time span) {
     for (const Time end = now_ + span; now_ < end; now_ += kStep) tick_devices();
   }
-  void set_link(Master::Port port, bool up) { master_.link_changed(port, up, now_); }
+  void set_link(Master::Port port, bool up) { asked_->link_changed(port, up, now_); }
 
  private:
   static constexpr Time kStep = 100us;
@@ -106,7 +108,7 @@ class Segment {
   }
   void cycle() {
     if (every_cycle) every_cycle(*this);
-    asking_master([this] { master_.begin_cycle(now_); });
+    asking_master([this] { asked_->begin_cycle(now_); });
     for (const Time end = now_ + settings_.cycle; now_ < end; now_ += kStep) {
       tick_devices();
       exchange();
@@ -122,10 +124,10 @@ class Segment {
     for (int guard = 0; guard < 1000; ++guard) {
       deliver();
       Bytes frame;
-      asking_master([&] { frame = master_.next_frame(now_); });
+      asking_master([&] { frame = asked_->next_frame(now_); });
       if (frame.empty()) return;
       pass(frame, Chain::Side::kPrimary);
-      if (settings_.redundant && master_.on_both_ports()) pass(frame, Chain::Side::kSecondary);
+      if (settings_.redundant && asked_->on_both_ports()) pass(frame, Chain::Side::kSecondary);
     }
   }
   void pass(Bytes frame, Chain::Side side) {
@@ -151,7 +153,7 @@ class Segment {
       const Reply one = *reply;
       reply = waiting_.erase(reply);
       const auto port = one.side == Chain::Side::kPrimary ? Master::Port::kPrimary : Master::Port::kSecondary;
-      asking_master([&] { master_.received(port, Bytes(one.bytes).first(one.size), now_); });
+      asking_master([&] { asked_->received(port, Bytes(one.bytes).first(one.size), now_); });
     }
   }
 
@@ -160,6 +162,7 @@ class Segment {
   std::vector<std::unique_ptr<Device>> devices_;
   Chain chain_;
   Master master_;
+  Master* asked_ = &master_;
   Time now_{};
   std::size_t replies_ = 0;
   std::deque<Reply> waiting_;

@@ -177,32 +177,81 @@ TEST(MasterStart, AnotherRobotOfTheSameMakerIsNamed) {
   EXPECT_THAT(segment.master().trouble(0), HasSubstr("product 0x04DC5500 (MCS500), not a Meca500"));
 }
 
+// The same robots, in another order, under a master that knows nothing: 1003h, 1001h and 1002h stand in them.
 TEST(MasterStart, RobotsThatKeepTheAddressesOfAnotherMasterGetNewOnes) {
-  std::vector<DeviceSettings> devices(3);
-  Segment segment(settings_for(3), devices);
+  Segment segment(settings_for(3));
   ASSERT_TRUE(segment.start());
-  // The same robots, in another order, under a master that knows nothing: addresses 1003h, 1001h, 1002h stand in them.
-  MasterSettings settings = settings_for(3);
-  Master second(settings);
-  Chain chain({&segment.device(2), &segment.device(0), &segment.device(1)});
-  Time now = segment.now();
-  bool operational = false;
-  for (int cycle = 0; cycle < 20'000 && !operational; ++cycle) {
-    second.begin_cycle(now);
-    for (int step = 0; step < 10; ++step, now += 100us) {
-      for (std::size_t i = 0; i < 3; ++i) segment.device(i).tick(now);
-      for (Bytes frame = second.next_frame(now); !frame.empty(); frame = second.next_frame(now)) {
-        std::array<std::byte, kLongestFrame> bytes;
-        std::ranges::copy(frame, bytes.begin());
-        const auto reply = std::span(bytes).first(frame.size());
-        if (chain.process(Chain::Side::kPrimary, reply, now)) second.received(Master::Port::kPrimary, reply, now);
-      }
-    }
-    operational = second.station(0).operational() && second.station(1).operational() && second.station(2).operational();
-  }
-  EXPECT_TRUE(operational);
+  Master second(settings_for(3));
+  segment.go_on_with(second);
+  segment.chain() = Chain({&segment.device(2), &segment.device(0), &segment.device(1)});
+  ASSERT_TRUE(segment.start()) << second.trouble(0);
   EXPECT_EQ(segment.device(2).esc().station_address(), 0x1001);
   EXPECT_EQ(segment.device(0).esc().station_address(), 0x1002);
+  EXPECT_EQ(segment.device(1).esc().station_address(), 0x1003);
+}
+
+TEST(MasterStart, RobotsThatChangeTheirPlacesAreTakenForWhoStandsThere) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(1);
+  segment.run(200ms);
+  segment.chain() = Chain({&segment.device(0), &segment.device(2), &segment.device(1)});
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  segment.run(5ms);
+  EXPECT_EQ(segment.master().input(1)[0], std::byte{0x12});
+  EXPECT_EQ(segment.master().input(2)[0], std::byte{0x11});
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+}
+
+TEST(MasterStart, RobotsWithAliasesKeepTheirNamesWhenTheyChangeTheirPlaces) {
+  MasterSettings settings;
+  settings.robots = {{0, 5}, {0, 7}};
+  std::vector<DeviceSettings> devices(2);
+  devices[0].alias = 5;
+  devices[1].alias = 7;
+  Segment segment(settings, devices);
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(0);
+  segment.run(200ms);
+  segment.chain() = Chain({&segment.device(1), &segment.device(0)});
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  segment.run(5ms);
+  EXPECT_EQ(segment.master().input(0)[0], std::byte{0x10});
+  EXPECT_EQ(segment.master().input(1)[0], std::byte{0x11});
+}
+
+TEST(MasterStart, FramesInBetweenStayShortHoweverManyWantSomething) {
+  Segment segment(settings_for(32));
+  std::size_t longest = 0;
+  segment.sent = [&](Bytes frame, Chain::Side) {
+    DatagramWalk<const std::byte> walk(frame);
+    bool cyclic = false;
+    while (const auto datagram = walk.next())
+      cyclic = cyclic || datagram->command() == Command::kLrw || datagram->command() == Command::kBrd;
+    if (!cyclic) longest = std::max(longest, frame.size());
+  };
+  ASSERT_TRUE(segment.start());
+  EXPECT_LE(longest, 900u);
+}
+
+// In OP under another master, at the logical addresses that this one gives to somebody else.
+TEST(MasterStart, ARobotThatAnotherMasterLeftRunningDoesNotTakeOutputsOfOthers) {
+  Segment first(settings_for(2));
+  ASSERT_TRUE(first.start());
+  first.master().set_output(0, output_of(1), true);
+  first.run(3ms);
+  MasterSettings settings;
+  settings.robots = {{1, std::nullopt}};
+  Master second(settings);
+  second.set_output(0, output_of(2), true);
+  first.go_on_with(second);
+  ASSERT_TRUE(first.run(20s, [&] { return second.station(0).operational(); })) << second.trouble(0);
+  first.run(1s);
+  EXPECT_EQ(first.device(1).output(), output_of(2));
+  EXPECT_NE(first.device(0).output(), output_of(2));
+  EXPECT_FALSE(first.device(0).operational());
+  EXPECT_EQ(second.counters(0).working_counter_misses, 0u);
 }
 
 TEST(MasterStart, WithoutAnybodyItSaysThatNobodyAnswersAndFindsThemWhenTheyCome) {
