@@ -22,6 +22,7 @@ class AccessMachine {
   virtual void tick(Time now) noexcept = 0;  // time-outs
   // What it wants accessed now, once; then nothing until answered() or lost() is called.
   virtual std::optional<Access> next(Time now) noexcept = 0;
+  // `data` may be shorter than what was asked for; that is as good as lost.
   virtual void answered(std::uint16_t working_counter, Bytes data, Time now) noexcept = 0;
   virtual void lost(Time now) noexcept = 0;
   virtual Time next_event() const noexcept = 0;  // when next() or tick() has something to do

@@ -187,7 +187,7 @@ bool MailboxClient::coe_received(Bytes payload) noexcept {
 
 void MailboxClient::lost(Time now) noexcept {
   ++counters_.lost_accesses;
-  if (step_ == Step::kRead) maybe_taken_ = !draining_;
+  if (step_ == Step::kRead) maybe_taken_ = true;
   go(step_ == Step::kRead ? Step::kStatus : step_, now);
 }
 

@@ -150,14 +150,9 @@ Time Station::next_event() const noexcept {
 void Station::answered(std::uint16_t working_counter, Bytes data, Time now) noexcept {
   StationState& s = *state_;
   if (!s.pending) return;
-  const Access access = *s.pending;
   s.pending.reset();
   if (std::exchange(s.abandoned, false) || s.active == nullptr) return;
-  if (!access.write && data.size() < access.size) {
-    s.active->lost(now);
-  } else {
-    s.active->answered(working_counter, data, now);
-  }
+  s.active->answered(working_counter, data, now);
   if (s.active == &s.al && s.al.status() != 0) {
     s.status = s.al.status();
     s.code = s.al.code();

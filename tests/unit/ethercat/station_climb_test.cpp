@@ -70,6 +70,13 @@ TEST(StationClimb, GivesTheSiiToTheRobotBeforePreop) {
   EXPECT_EQ(rig.device.memory(reg::kSiiOwner, 1), from_hex("01"));
 }
 
+TEST(StationClimb, DoesWithoutClocksWhereADeviceHasNone) {
+  StationRig rig;
+  rig.device.missing = {reg::kDcCyclicUnit};
+  ASSERT_TRUE(rig.climbs());
+  EXPECT_EQ(rig.station.counters().lost_accesses, 0u);
+}
+
 TEST(StationClimb, AcknowledgesAnErrorThatStandsBeforeItAsks) {
   StationRig rig;
   rig.find();
@@ -184,6 +191,16 @@ TEST(StationClock, GoesOnWithClocksThatWereReadyBefore) {
   rig.station.dc_ready(5'000'000'000, rig.now);
   ASSERT_TRUE(rig.climbs());
   EXPECT_GT(rig.device.memory(0x0990, 8), ByteVector(8));
+}
+
+TEST(StationClock, IsWaitedForAgainWhenTheRobotWasGone) {
+  StationRig rig(dc_settings());
+  rig.station.dc_ready(5'000'000'000, rig.now);
+  ASSERT_TRUE(rig.climbs());
+  rig.station.absent("not in the chain", rig.now);
+  rig.find();
+  rig.run(5s);
+  EXPECT_THAT(rig.trouble(), HasSubstr("clocks of the chain"));
 }
 
 TEST(StationClock, IsSwitchedOffWithoutDc) {

@@ -119,13 +119,15 @@ class FakeDevice {
   std::vector<std::uint8_t> al_requests;        // low byte of 0120, in order
   std::size_t duplicates = 0;
   bool powered = true;
+  std::vector<std::uint16_t> missing;  // registers that it does not have
 
   struct Answer {
     std::uint16_t working_counter = 0;
     ByteVector data;
   };
   Answer access(const Access& access) {
-    if (!powered) return {0, access.write ? ByteVector{} : ByteVector(access.size)};
+    if (!powered || std::ranges::count(missing, access.address) != 0)
+      return {0, access.write ? ByteVector{} : ByteVector(access.size)};
     return access.write ? write(access) : read(access);
   }
 

@@ -67,6 +67,15 @@ TEST(StationRecovery, OfARobotThatWasSwitchedOffAndOnIsAWholeWayUp) {
   EXPECT_EQ(rig.device.dictionary.written.size(), 28u);
 }
 
+TEST(StationRecovery, OfARobotThatIsSwitchedOffAllTheTimeIsPaced) {
+  StationRig rig;
+  ASSERT_TRUE(rig.climbs());
+  rig.run(1s);
+  rig.device.power_cycle();
+  ASSERT_TRUE(rig.run_until(Phase::kPausing, 100ms));
+  ASSERT_TRUE(rig.run_until(Phase::kOperational));
+}
+
 TEST(StationRecovery, BecomesTheLongWayWithPausesWhenErrorsDoNotEnd) {
   StationRig rig;
   ASSERT_TRUE(rig.climbs());
@@ -338,6 +347,19 @@ TEST(StationEmergency, CannotBeLookedForWhenTheRobotIsGoneAndThatIsNoFaultOfItsO
   rig.device.powered = false;
   rig.run(10s);
   EXPECT_EQ(rig.station.phase(), Phase::kOperational);  // that it is gone is the master's to say
+}
+
+TEST(StationEmergency, IsLookedForAnewAfterAnAnswerThatNeverCame) {
+  StationRig rig;
+  ASSERT_TRUE(rig.climbs());
+  rig.station.tick(rig.now += 1s);
+  ASSERT_TRUE(rig.station.next(rig.now));
+  rig.station.tick(rig.now += 3s);  // the master has not said what became of it
+  EXPECT_FALSE(rig.station.next(rig.now));
+  rig.station.lost(rig.now);
+  rig.device.post_emergency(0xFF01);
+  rig.run(1s);
+  EXPECT_EQ(rig.station.counters().emergencies, 1u);
 }
 
 // ---- Nonsense

@@ -87,6 +87,16 @@ TEST(StationMailbox, TriesAgainWhileTheOtherEndIsFull) {
   EXPECT_EQ(rig.counters.lost_accesses, 0u);  // a full mailbox is no loss
 }
 
+TEST(StationMailbox, LeavesAFullOneTimeToEmpty) {
+  MailboxRig rig;
+  rig.request();
+  ASSERT_TRUE(rig.client.next(rig.now));
+  rig.client.answered(0, {}, rig.now);
+  EXPECT_FALSE(rig.client.next(rig.now));
+  EXPECT_EQ(rig.client.next_event(), rig.now + kPollPeriod);
+  EXPECT_TRUE(rig.client.next(rig.now + kPollPeriod));
+}
+
 TEST(StationMailbox, WritesALostMailAgainWithTheSameCounter) {
   MailboxRig rig;
   rig.device.answers = {{in_mailbox(kReply)}};

@@ -210,6 +210,33 @@ TEST(StationSdo, IsAskedOnceMoreWhenTheDeviceDoesNotRepeatALostMail) {
   EXPECT_EQ(rig.mail(0), rig.mail(1));
 }
 
+TEST(StationSdo, BeginsAgainWhenASegmentIsLostThatTheDeviceDoesNotRepeat) {
+  SdoRig rig;
+  rig.device.repeats = false;
+  script_segments(rig);
+  rig.device.answers.resize(2);
+  script_segments(rig);
+  rig.sdo.upload({0x2F00, 0}, false, rig.now);
+  int left = 1;
+  ASSERT_EQ(
+      rig.run([&](const Access& a) { return a.address == 0x1080 && left-- == 0 ? Loss::kReply : Loss::kNothing; }),
+      Outcome::kDone);
+  ASSERT_EQ(rig.value().size(), 512u);
+  EXPECT_EQ(rig.value()[300], std::byte{300 & 0xFF});
+  EXPECT_EQ(rig.mail(2), rig.mail(0));
+}
+
+TEST(StationSdo, GivesUpWhenTheSecondTryIsLostToo) {
+  SdoRig rig;
+  rig.device.repeats = false;
+  for (int i = 0; i < 9; ++i) rig.answer("0A 00 00 00 00 13 00 30 43 18 10 01 E1 AD EC 00");
+  rig.sdo.upload({0x1018, 1}, false, rig.now);
+  ASSERT_EQ(rig.run([&](const Access& a) { return a.address == 0x1080 ? Loss::kReply : Loss::kNothing; }),
+            Outcome::kFailed);
+  EXPECT_EQ(rig.device.written.size(), 2u);
+  EXPECT_THAT(rig.trouble(), HasSubstr("does not repeat a mail"));
+}
+
 TEST(StationSdo, AnObjectOfAbsurdSizeIsRefused) {
   SdoRig rig;
   rig.answer("0A 00 00 00 00 13 00 30 41 00 2F 00 FF FF FF FF");

@@ -121,6 +121,13 @@ TEST(StationSiiReader, WaitsWhileItIsBusy) {
   EXPECT_EQ(rig.device.commands, 16);
 }
 
+TEST(StationSiiReader, HasItsTimeForEveryReadAnew) {
+  SiiRig rig;
+  rig.device.busy_reads = 400;  // 0.2 s
+  rig.run();
+  EXPECT_TRUE(rig.reader.done()) << rig.reader.trouble();
+}
+
 TEST(StationSiiReader, ClearsARefusalAndAsksAgain) {
   SiiRig rig;
   rig.device.refusals = 3;
