@@ -116,10 +116,10 @@ InFlight::Arrival InFlight::received(std::size_t port, Bytes bytes) noexcept {
   return {Verdict::kComplete, frame, Bytes(frame->merged).first(frame->size)};
 }
 
-InFlight::Frame* InFlight::overdue(Time timeout, Time now) noexcept {
+InFlight::Frame* InFlight::overdue(const Timeouts& timeouts, Time now) noexcept {
   if (used_ == 0) return nullptr;
   for (Frame& frame : frames_)
-    if (frame.in_flight && now - frame.sent >= timeout) return &frame;
+    if (frame.in_flight && now - frame.sent >= timeouts.of(frame.use)) return &frame;
   return nullptr;
 }
 
@@ -133,11 +133,14 @@ void InFlight::await_one_copy() noexcept {
   for (Frame& frame : frames_) frame.awaited = 1;
 }
 
-std::optional<Time> InFlight::oldest() const noexcept {
+std::optional<Time> InFlight::next_overdue(const Timeouts& timeouts) const noexcept {
   if (used_ == 0) return std::nullopt;
   std::optional<Time> out;
-  for (const Frame& frame : frames_)
-    if (frame.in_flight && (!out || frame.sent < *out)) out = frame.sent;
+  for (const Frame& frame : frames_) {
+    if (!frame.in_flight) continue;
+    const Time end = frame.sent + timeouts.of(frame.use);
+    if (!out || end < *out) out = end;
+  }
   return out;
 }
 

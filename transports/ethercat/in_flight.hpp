@@ -51,6 +51,10 @@ class InFlight {
   static constexpr std::size_t kMostDatagrams = 48;  // in one frame
 
   enum class Use : std::uint8_t { kCyclic, kService };
+  struct Timeouts {
+    Time cyclic{}, service{};
+    Time of(Use use) const noexcept { return use == Use::kCyclic ? cyclic : service; }
+  };
 
   struct Frame {
     Use use = Use::kCyclic;
@@ -98,14 +102,14 @@ class InFlight {
     Bytes reply;
   };
   Arrival received(std::size_t port, Bytes frame) noexcept;
-  // One that has been under way for `timeout`: release() it. If a copy of it did arrive, that is in its merged bytes.
-  Frame* overdue(Time timeout, Time now) noexcept;
+  // One that has been under way for too long: release() it. If a copy of it did arrive, that is in its merged bytes.
+  Frame* overdue(const Timeouts& timeouts, Time now) noexcept;
   void release(Frame& frame) noexcept;
   // No more copies than one are to be waited for: a port has no carrier any more.
   void await_one_copy() noexcept;
 
-  // When the oldest frame was sent; empty when nothing is in flight.
-  std::optional<Time> oldest() const noexcept;
+  // When the next frame is overdue; empty when nothing is in flight.
+  std::optional<Time> next_overdue(const Timeouts& timeouts) const noexcept;
 
  private:
   Frame* of_index(std::uint8_t index) noexcept;

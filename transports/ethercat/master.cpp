@@ -49,9 +49,10 @@ MasterState::MasterState(const MasterSettings& from)
 }
 
 void MasterState::give_up_overdue(Time now) noexcept {
-  while (InFlight::Frame* const frame = in_flight.overdue(settings.frame_timeout, now)) {
+  while (InFlight::Frame* const frame = in_flight.overdue(timeouts(), now)) {
     ++counters.lost_frames;
     // Of a ring one copy may have come: then that is what there is to know.
+    if (frame->arrived > 0 && frame->use == InFlight::Use::kCyclic) ++single_copies;
     if (frame->arrived > 0)
       dispatch(*frame, Bytes(frame->merged).first(frame->size), now);
     else
@@ -126,7 +127,7 @@ Bytes Master::next_frame(Time now) noexcept {
 Time Master::next_event() const noexcept {
   if (state_->cyclic_due) return Time::min();
   Time out = state_->next_service_event();
-  if (const auto oldest = state_->in_flight.oldest()) out = std::min(out, *oldest + state_->settings.frame_timeout);
+  if (const auto overdue = state_->in_flight.next_overdue(state_->timeouts())) out = std::min(out, *overdue);
   return out;
 }
 
@@ -150,6 +151,7 @@ void Master::received(Port port, Bytes frame, Time now) noexcept {
   }
   if (arrival.verdict != InFlight::Verdict::kComplete) return;
   if (cyclic) {
+    if (arrival.frame->awaited > 1) state.single_copies = 0;
     state.round_trip.add(now - arrival.frame->sent, now);
     if (arrival.frame->cycle != state.cycle) ++state.counters.late_frames;
   }
@@ -161,7 +163,8 @@ void Master::link_changed(Port port, bool up, Time now) noexcept {
   MasterState& state = *state_;
   const bool had_port = state.any_port();
   state.ports[static_cast<std::size_t>(port)] = up && (port == Port::kPrimary || state.settings.redundant);
-  if (state.settings.redundant && state.copies() == 1) {
+  state.single_copies = 0;
+  if (state.settings.redundant && !state.both_ends()) {
     state.ring_open = true;
     state.in_flight.await_one_copy();
   }

@@ -41,15 +41,17 @@ struct MasterSettings {
   Time watchdog = std::chrono::milliseconds(100);
   bool redundant = false;      // frames go out on both ports; what comes back on either is merged
   std::uint64_t dc_epoch = 0;  // ns since 2000-01-01 at Time 0 of `now`; the owner knows the wall clock
-  // A frame that is not back after so long is lost; service frames (registers, mailboxes) are sent so far apart.
-  Time frame_timeout = std::chrono::milliseconds(4), service_period = std::chrono::milliseconds(1);
+  // A frame that is not back after so long is lost. Nobody waits for process data: an image that is late still counts
+  // when it is the newest. Service frames (registers, mailboxes) are waited for; they are sent so far apart.
+  Time frame_timeout = std::chrono::milliseconds(20), service_timeout = std::chrono::milliseconds(4),
+       service_period = std::chrono::milliseconds(1);
   StationSettings station;  // for its time-outs
 };
 
 // Monotonic since construction, of the segment.
 struct MasterCounters {
   std::uint64_t cycles = 0, sent_frames = 0, received_frames = 0;
-  std::uint64_t lost_frames = 0;  // not back within frame_timeout
+  std::uint64_t lost_frames = 0;  // not back in time
   std::uint64_t late_frames = 0;  // back, but after the next cycle had begun
   std::uint64_t unexpected_frames =
       0;  // replies that match nothing in flight: index, command, address (duplicates too)

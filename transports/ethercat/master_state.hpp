@@ -55,7 +55,14 @@ struct MasterState {
 
   // master.cpp
   bool any_port() const noexcept { return ports[0] || ports[1]; }
-  unsigned copies() const noexcept { return settings.redundant && ports[0] && ports[1] ? 2 : 1; }
+  bool both_ends() const noexcept { return settings.redundant && ports[0] && ports[1]; }
+  // How many copies of a frame come back. A port that has carrier and yet brings nothing back (a cable that leads
+  // elsewhere) must not make every image as old as the time-out: it is waited for now and then only.
+  unsigned copies() const noexcept {
+    constexpr unsigned kMissed = 3, kNowAndThen = 128;
+    return both_ends() && (single_copies < kMissed || cycle % kNowAndThen == 0) ? 2 : 1;
+  }
+  InFlight::Timeouts timeouts() const noexcept { return {settings.frame_timeout, settings.service_timeout}; }
   void give_up_overdue(Time now) noexcept;
   void dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept;
   void lost(const InFlight::Frame& frame, Time now) noexcept;
@@ -113,6 +120,7 @@ struct MasterState {
   unsigned count_stands = 0;            // cycles that it has been the same
   std::optional<std::uint16_t> scanned_count;
   bool ring_open = false;
+  unsigned single_copies = 0;  // cyclic frames in a row of which one copy was missed
 
   // Service
   bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;

@@ -84,9 +84,9 @@ TEST(MasterFaults, FramesHeldUpBeyondTheTimeoutAreLostAndThenUnexpected) {
   ASSERT_TRUE(segment.start());
   segment.run(20ms);
   segment.fate = [once = true](std::size_t) mutable {
-    return Fate{.held_up = std::exchange(once, false) ? 6ms : Time{}};
+    return Fate{.held_up = std::exchange(once, false) ? 22ms : Time{}};
   };
-  segment.run(20ms);
+  segment.run(40ms);
   EXPECT_EQ(segment.master().counters().lost_frames, 1u);
   EXPECT_EQ(segment.master().counters().unexpected_frames, 1u);
 }

@@ -96,9 +96,11 @@ TEST_F(InFlightTest, AnIndexIsNotUsedAgainWhileItsFrameIsUnderWay) {
 TEST_F(InFlightTest, OverdueFramesAreGivenUpAndTheirPlacesFree) {
   for (std::size_t i = 0; i < InFlight::kMostFrames; ++i) send({kOne});
   EXPECT_FALSE(in_flight_.begin(InFlight::Use::kService, 0));
-  EXPECT_EQ(in_flight_.overdue(4ms, 3ms), nullptr);
-  while (InFlight::Frame* frame = in_flight_.overdue(4ms, 4ms)) in_flight_.release(*frame);
-  EXPECT_FALSE(in_flight_.oldest());
+  const InFlight::Timeouts timeouts{.cyclic = 20ms, .service = 4ms};
+  EXPECT_EQ(in_flight_.next_overdue(timeouts), 4ms);
+  EXPECT_EQ(in_flight_.overdue(timeouts, 3ms), nullptr);
+  while (InFlight::Frame* frame = in_flight_.overdue(timeouts, 4ms)) in_flight_.release(*frame);
+  EXPECT_FALSE(in_flight_.next_overdue(timeouts));
   EXPECT_TRUE(in_flight_.begin(InFlight::Use::kService, 0));
 }
 

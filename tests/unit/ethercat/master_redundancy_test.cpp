@@ -63,6 +63,20 @@ TEST(MasterRedundancy, ACutThatNoCarrierTellsOfIsSurvivedToo) {
   }
 }
 
+TEST(MasterRedundancy, AnEndThatBringsNothingBackMakesImagesNoOlderThanTheyAre) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().cut(3);  // the last cable leads elsewhere now, and has carrier there
+  std::uint8_t cycle = 0;
+  segment.every_cycle = [&cycle](Segment& of) {
+    image::InputBytes input{};
+    input.fill(static_cast<std::byte>(++cycle));
+    for (std::size_t i = 0; i < 3; ++i) of.device(i).set_input(input);
+  };
+  segment.run(199ms);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.master().input(i)[0], static_cast<std::byte>(cycle));
+}
+
 TEST(MasterRedundancy, StartedWithAnOpenRingTheRobotsBeforeTheBreakRunAndTheOthersWhenItIsWhole) {
   Segment segment(ring_of(3));
   segment.chain().cut(2);
