@@ -123,6 +123,9 @@ void Cycle::step(std::span<const control::Request> requests, transports::Exchang
 
   exchange.output_valid = s.controller.may_command();
   s.outputs = s.controller.outputs();
+  // A bus without idle sends this before we have seen the robot. Firmware 9 goes on by itself unless Pause stands.
+  const bool may_be_firmware_9 = s.firmware.layout() == image::Layout::kFirmware9 || exchange.identity.major == 9;
+  if (s.counters.fresh_images == 0 && may_be_firmware_9) s.outputs.motion_control.pause_motion = true;
   auto& slots = s.outputs.dynamic_data_configuration.type_ids;
   slots = s.limits.slots(s.firmware.slots(s.controller.dynamic_data()));
   image::encode_outputs(s.outputs, {s.firmware.layout(), s.settings.byte_order}, exchange.output);

@@ -42,7 +42,9 @@ inline constexpr std::size_t kMostCounters = 32;
 struct Exchange {
   // host -> robot, written by the loop before exchange()
   image::OutputBytes output{};
-  bool output_valid = false;  // false: keep the link but send what the protocol calls idle / nothing new
+  // False: keep the link but send what the protocol calls idle. One that has no such thing (EtherCAT) sends `output`:
+  // the loop keeps in it an image that asks nothing of the robot.
+  bool output_valid = false;
 
   // robot -> host, written by the transport in exchange()
   image::InputBytes input{};

@@ -137,7 +137,8 @@ void Bus::exchange(Time now, std::span<transports::Exchange> exchanges) noexcept
   const bool arrival = std::exchange(woke_for_arrival_, false);
   if (!arrival) {
     for (std::size_t i = 0; i < exchanges.size(); ++i) {
-      master_->set_output(i, exchanges[i].output, exchanges[i].output_valid);
+      // Also what is not to command: the outputs from before a loss must not be the first that a robot gets after it.
+      master_->set_output(i, exchanges[i].output, true);
     }
     begin_cycle(now);
   }

@@ -39,6 +39,48 @@ TEST(Cycle, sends_nothing_before_it_has_seen_the_robot) {
   EXPECT_TRUE(b.exchange.output_valid);
 }
 
+// What is not to command is sent all the same where a bus has no idle (EtherCAT).
+TEST(Cycle, asks_nothing_of_a_robot_that_it_has_not_seen_since_the_link_went_down) {
+  for (const CommandKind under_way : {kActivate, kHome, kResetError, kResumeMotion, kMotion}) {
+    SCOPED_TRACE(static_cast<int>(under_way));
+    Bench b;
+    b.connect();
+    b.robot.answers_actions = b.robot.echoes = b.robot.executes = false;
+    b.robot.in.robot_status.activated = under_way != kActivate;
+    b.robot.in.robot_status.homed = under_way == kMotion || under_way == kResumeMotion;
+    b.robot.in.robot_status.error_code = under_way == kResetError ? 3005 : 0;
+    b.robot.in.motion_status.paused = under_way == kResumeMotion;
+    b.steps(5);
+    under_way == kMotion ? b.move(30) : b.send(under_way);
+    const auto asks = [&] {
+      const image::RobotControl& r = b.out.robot_control;
+      const image::MotionControl& m = b.out.motion_control;
+      return r.activate || r.home || r.reset_error || r.deactivate || m.resume_motion || m.clear_motion || m.set_point;
+    };
+    ASSERT_TRUE(b.until(asks, 100));
+    b.link_up = false;
+    b.steps(2);
+    EXPECT_FALSE(b.exchange.output_valid);
+    EXPECT_FALSE(asks());
+    b.exchange.link = LinkState::kUp;
+    b.step_bridge();
+    EXPECT_FALSE(asks()) << "the link is back, and no image yet";
+  }
+}
+
+// It goes on by itself where Pause does not stand; which firmware it is, EtherCAT knows before the first image.
+TEST(Cycle, holds_a_firmware_9_robot_that_it_has_not_seen_yet) {
+  for (const std::uint16_t major : {9, 10, 11}) {
+    Bench b({}, static_cast<Layout>(major - 9));
+    b.exchange.identity = {major, 3, 0, 1};
+    b.step_bridge();
+    EXPECT_EQ(b.out.motion_control.pause_motion, major == 9) << major;
+    b.link_up = true;
+    b.steps(3);
+    EXPECT_FALSE(b.out.motion_control.pause_motion) << "it stands still and is off: nothing to hold";
+  }
+}
+
 TEST(Cycle, starts_the_image_from_what_the_robot_shows) {
   Bench b;
   b.robot.ready();
