@@ -26,7 +26,7 @@ prove() {
     million)
       export MECA_COMMANDS=${MECA_COMMANDS:-1000000}
       in_test test_control 'Million*'
-      in_test test_buses '*executed*'
+      in_test test_buses '*OverABus*'
       ;;
     faults) MECA_FAULT_SEQUENCES=${MECA_FAULT_SEQUENCES:-10000} in_test test_control '*FaultAndRecovery*' ;;
     stops) in_test test_stops '*' ;;

@@ -2,18 +2,17 @@
 // behind it, and a network between them that loses, repeats and is cut. No sockets, simulated time.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
-#include "tests/unit/control/bench.hpp"
+#include "tests/unit/buses/bus_wire.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 #include "transports/ethernet_ip/originator.hpp"
 #include "transports/image/codec.hpp"
 
 namespace meca::test {
 
-class EthernetIpWire {
+class EthernetIpWire : public BusWire {
  public:
   using Time = ethernet_ip::Time;
   static constexpr auto kRpi = 10ms;
@@ -23,9 +22,7 @@ class EthernetIpWire {
   explicit EthernetIpWire(Bench& bench) : bench_(bench), adapter_(adapter_settings()), originator_(originator(1)) {
     bench_.wire = [this] { exchange(); };
   }
-  ~EthernetIpWire() { bench_.wire = nullptr; }
-  EthernetIpWire(const EthernetIpWire&) = delete;
-  EthernetIpWire& operator=(const EthernetIpWire&) = delete;
+  ~EthernetIpWire() override { bench_.wire = nullptr; }
 
   static CycleSettings settings(CycleSettings s = {}) {
     s.cycle = kRpi;
@@ -35,8 +32,15 @@ class EthernetIpWire {
     return s;
   }
 
-  const ethernet_ip::Adapter& adapter() const { return adapter_; }
-  const ethernet_ip::Originator& originator() const { return originator_; }
+  const image::OutputBytes& heard() const override { return adapter_.output(); }
+  bool connected() const override { return adapter_.connected(); }
+  std::uint64_t connections() const override { return adapter_.counters().opens; }
+  std::string figures() const override {
+    const auto& originator = originator_.counters();
+    return "connections opened " + std::to_string(connections()) + "; of this life: watchdog trips " +
+           std::to_string(originator.watchdog_trips) + ", lost " + std::to_string(originator.lost) + ", stale " +
+           std::to_string(originator.stale);
+  }
 
  private:
   static ethernet_ip::AdapterSettings adapter_settings() {

@@ -449,7 +449,8 @@ class Million : public Bench {
         "owner changes %llu, clears %llu, deactivations %llu, robot errors %llu; %.2f h of the robot's time\n",
         n(f.commands), n(f.executed), n(f.completed), n(f.discarded), n(f.rejected), n(f.aborted), n(f.resent),
         n(f.cuts), n(f.full_queues), n(f.restarts), n(f.lost_out), n(f.lost_in), n(f.repeated), n(f.owners_changed),
-        n(f.clears), n(f.deactivations), n(f.errors), static_cast<double>(f.cycles) / 3.6e6);
+        n(f.clears), n(f.deactivations), n(f.errors),
+        std::chrono::duration<double, std::ratio<3600>>(settings.cycle).count() * static_cast<double>(f.cycles));
   }
   static unsigned long long n(std::uint64_t x) { return x; }
 
