@@ -1,5 +1,5 @@
-// EtherCAT in place of the bench's direct link: our master and a chain of one device, with the simulated robot behind it,
-// and a cable between them that loses, repeats and is cut. No sockets, simulated time.
+// EtherCAT in place of the bench's direct link: our master and a chain of one device, with the simulated robot behind
+// it, and a cable between them that loses, repeats and is cut. No sockets, simulated time.
 #pragma once
 
 #include <optional>
