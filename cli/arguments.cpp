@@ -26,12 +26,22 @@ Examples:
   meca-ctl --robot arm2 watch                 live view; with --json one object a line
   meca-ctl errors 1007                        what an error or stop means and what to do; all without a code
   meca-ctl sim press p-stop2                  buttons of a simulated robot here; 'meca-ctl sim' lists them
-  meca-ctl scan ethernet_ip --interface eth1  which devices are there, before any bridge runs
+  meca-ctl scan ethernet_ip --interface eth1  which devices are there, before any bridge runs; 'scan ethercat' too
   meca-ctl decode --input image.bin --firmware 11.3
 
 Exit codes: 0 done, 1 refused, aborted or discarded, 2 arguments, 4 no bridge or no DDS, 5 time-out, 130 interrupted.
 Control ends with the command (unless you 'take' it); motion that the robot has queued is finished.
 meca-ctl is no safety device: the emergency stop is the button.)";
+
+constexpr const char* kScanFooter = R"(
+ethernet_ip: asks on every interface of --interface, or on all of this machine. Waits --timeout seconds, default 2.5.
+
+ethercat: lists the devices of the chain on --interface in the order of the cable: address and alias, who each one is,
+its AL state and error, which ports have a link, what the error counters have counted since power-on, and whether it
+has a distributed clock. In a ring, name both interfaces. Waits --timeout seconds, default 1, for a first answer.
+It only reads, so it may be used beside a running bridge; who a device is cannot be read then from all of them, and
+another master counts frames that it did not send. Raw frames need root or CAP_NET_RAW:
+  sudo meca-ctl scan ethercat --interface eth1)";
 
 // What the subcommands collect before it is checked.
 struct Words {
@@ -166,23 +176,42 @@ void add_sim(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::
   sub->add_option("--socket", call.socket, "Control socket of the robot, when it is not at its usual place");
 }
 
+ScanBus scan_bus(const std::string& word) {
+  if (word == "ethernet_ip") return ScanBus::kEthernetIp;
+  if (word == "ethercat") return ScanBus::kEthercat;
+  if (word.empty())
+    throw UsageError("scan wants a fieldbus, as in 'scan ethernet_ip' or 'scan ethercat --interface eth1'");
+  const std::vector<std::string> buses{"ethernet_ip", "ethercat"};
+  throw UsageError("scan does not know '" + word + "', only ethernet_ip and ethercat" + did_you_mean(word, buses));
+}
+
+void check_ethercat_scan(const Invocation& call) {
+  if (call.interfaces.empty()) {
+    throw UsageError(
+        "scan ethercat wants --interface NAME, the network interface that the chain is wired to ('ip link' lists "
+        "them): "
+        "its frames would disturb other networks");
+  }
+  if (!call.address.empty()) {
+    throw UsageError("scan ethercat takes no --address: devices have positions there, and all of them are asked");
+  }
+}
+
 void add_scan(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {
   auto* sub = add_verb(
       app, "scan", "Who is there on a fieldbus; needs no bridge",
       [](Invocation& c, const Words& w) {
-        const std::vector<std::string> buses{"ethernet_ip"};
-        if (w.first.empty()) throw UsageError("scan wants a fieldbus, as in 'scan ethernet_ip --interface eth1'");
-        if (w.first != buses.front()) {
-          throw UsageError("scan does not know '" + w.first + "', only ethernet_ip" + did_you_mean(w.first, buses));
-        }
         c.verb = Verb::kScan;
+        c.scan_bus = scan_bus(w.first);
+        if (c.scan_bus == ScanBus::kEthercat) check_ethercat_scan(c);
       },
       finishers);
-  sub->add_option("bus", words.first, "ethernet_ip");
-  sub->add_option("--address", call.address,
-                  "Ask this IPv4 address alone, or a subnet's broadcast address; default: everybody on the interfaces");
-  sub->footer(
-      "Asks on every interface of --interface, or on all of this machine. Waits --timeout seconds, default 2.5.");
+  sub->add_option("bus", words.first, "ethernet_ip or ethercat");
+  sub->add_option(
+      "--address", call.address,
+      "ethernet_ip: ask this IPv4 address alone, or a subnet's broadcast address; default: everybody on the "
+      "interfaces");
+  sub->footer(kScanFooter);
 }
 
 void add_decode(CLI::App& app, Invocation& call, Words& words, std::map<const CLI::App*, Finish>& finishers) {

@@ -106,6 +106,12 @@ std::string fixed(double value, int width, int decimals) {
   return text.data();
 }
 
+std::string seconds_text(std::chrono::nanoseconds time) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g s", std::chrono::duration<double>(time).count());
+  return text.data();
+}
+
 std::string error_text(std::uint16_t code) {
   if (code == 0) return "none";
   const auto* info = image::find_error_code(code);

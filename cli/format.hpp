@@ -1,6 +1,7 @@
 // Samples -> text for people. Pure functions: what is shown depends on the arguments alone.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,5 +44,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows);
 
 // Fixed decimals, as wide as told: fixed(-1.5, 8, 3) is "  -1.500".
 std::string fixed(double value, int width, int decimals);
+
+std::string seconds_text(std::chrono::nanoseconds time);  // "2.5 s"
 
 }  // namespace meca::cli

@@ -36,6 +36,8 @@ enum class Verb : std::uint8_t {
   kScan,
 };
 
+enum class ScanBus : std::uint8_t { kEthernetIp, kEthercat };
+
 // One command for the bridge, without robot, client and id.
 struct CommandPlan {
   std::string title;  // as the person knows it: "move-joints", "SetJointVel"
@@ -76,6 +78,7 @@ struct Invocation {
   std::string socket;    // empty: the robot's usual one
 
   // scan
+  ScanBus scan_bus = ScanBus::kEthernetIp;
   std::string address;  // empty: everybody on the interfaces
 
   // decode

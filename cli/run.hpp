@@ -20,6 +20,7 @@ ExitCode run_watch(const Invocation& call, const Report& report);
 ExitCode run_topics(const Invocation& call, const Report& report);
 ExitCode run_sim(const Invocation& call, const Report& report);
 ExitCode run_scan(const Invocation& call, const Report& report);
+ExitCode run_scan_ethercat(const Invocation& call, const Report& report);
 ExitCode run_decode(const Invocation& call, const Report& report);
 ExitCode run_errors(const Invocation& call, const Report& report);
 

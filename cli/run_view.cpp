@@ -155,7 +155,7 @@ ExitCode run(const Invocation& call, const Report& report) {
     case Verb::kSim:
       return run_sim(call, report);
     case Verb::kScan:
-      return run_scan(call, report);
+      return call.scan_bus == ScanBus::kEthercat ? run_scan_ethercat(call, report) : run_scan(call, report);
   }
   return ExitCode::kArguments;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "cli/format.hpp"
@@ -57,12 +56,6 @@ std::string addresses_of(const FoundDevice& device) {
   std::string list;
   for (const auto address : device.addresses) list += (list.empty() ? "" : ", ") + net::to_string(address);
   return list;
-}
-
-std::string seconds_text(std::chrono::nanoseconds t) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g s", std::chrono::duration<double>(t).count());
-  return text;
 }
 
 }  // namespace

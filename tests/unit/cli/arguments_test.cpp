@@ -85,6 +85,18 @@ TEST(Arguments, ScanWantsAFieldbusThatItKnows) {
   EXPECT_EQ(call.address, "192.168.0.100");
   EXPECT_THAT(refusal({"scan"}), HasSubstr("scan wants a fieldbus"));
   EXPECT_THAT(refusal({"scan", "ethernetip"}), HasSubstr("did you mean 'ethernet_ip'?"));
+  EXPECT_THAT(refusal({"scan", "ethercad"}), HasSubstr("did you mean 'ethercat'?"));
+}
+
+TEST(Arguments, ScanOfEthercatWantsTheInterfaceOfTheChain) {
+  const auto call = understood({"scan", "ethercat", "--interface", "eth1", "--interface", "eth2"});
+  EXPECT_EQ(call.verb, Verb::kScan);
+  EXPECT_EQ(call.scan_bus, ScanBus::kEthercat);
+  EXPECT_THAT(call.interfaces, ElementsAre("eth1", "eth2"));
+  EXPECT_THAT(refusal({"scan", "ethercat"}), HasSubstr("scan ethercat wants --interface NAME"));
+  EXPECT_THAT(refusal({"scan", "ethercat", "--interface", "eth1", "--address", "10.0.0.1"}),
+              HasSubstr("takes no --address"));
+  EXPECT_EQ(understood({"scan", "ethernet_ip"}).scan_bus, ScanBus::kEthernetIp);
 }
 
 TEST(Arguments, ConnectionOptionsAreTaken) {
