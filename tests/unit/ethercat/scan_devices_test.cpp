@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "tests/unit/ethercat/master_segment.hpp"
 #include "transports/ethercat/chain.hpp"
 #include "transports/ethercat/scan.hpp"
 
@@ -135,6 +136,41 @@ TEST(ScanOfRobots, EndsAtACutAndFindsTheLinkThatWasLost) {
   EXPECT_FALSE(found[1].ports[1].link);
   EXPECT_EQ(found[1].ports[1].lost_links, 1);
   EXPECT_EQ(found[0].ports[1].lost_links, 0);
+}
+
+TEST(ScanOfRobots, BesideARunningMasterSaysSoAndDisturbsNothing) {
+  test::Segment segment(test::settings_for(3));
+  ASSERT_TRUE(segment.start());
+  Scan scan({}, segment.now());
+  std::array<std::byte, kLongestFrame> buffer{};
+  segment.sent = [&](Bytes frame, Chain::Side) { scan.received(frame, segment.now()); };
+  segment.every_cycle = [&](test::Segment& s) {
+    scan.tick(s.now());
+    const Bytes frame = scan.next_frame(s.now());
+    if (frame.empty()) return;
+    std::ranges::copy(frame, buffer.begin());
+    const auto back = std::span(buffer).first(frame.size());
+    ASSERT_TRUE(s.chain().process(Chain::Side::kPrimary, back, s.now()));
+    s.master().received(Master::Port::kPrimary, back, s.now());  // both sockets see every frame
+    scan.received(back, s.now());
+  };
+  const auto scanned = [&scan] { return scan.done(); };
+  ASSERT_TRUE(segment.run(1s, scanned));
+  ASSERT_EQ(scan.devices().size(), 3u);
+  for (const ScannedDevice& d : scan.devices()) {
+    EXPECT_EQ(d.al_status, static_cast<std::uint16_t>(AlState::kOp));
+    EXPECT_TRUE(runs_under_a_master(d));
+    EXPECT_TRUE(d.process_data_of_meca500);
+    EXPECT_GE(d.station_address, 0x1001);
+  }
+  EXPECT_GT(scan.frames_of_others(), 0u);
+
+  EXPECT_FALSE(segment.run(100ms, [&] { return !segment.all_operational(); })) << "a robot left OP";
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(segment.master().counters(i).working_counter_misses, 0u);
+    EXPECT_EQ(segment.master().counters(i).losses, 0u);
+  }
+  EXPECT_EQ(segment.master().counters().lost_frames, 0u);
 }
 
 }  // namespace
