@@ -10,8 +10,7 @@ Chain::Chain(std::vector<Device*> devices, Time wire)
 }
 
 std::optional<Chain::Side> Chain::process(Side in, std::span<std::byte> frame, Time now) noexcept {
-  if (!DatagramWalk<std::byte>(frame).next() || (frame[kSourceAddress] & kReplyBit) != std::byte{0})
-    return std::nullopt;
+  if (!DatagramWalk<std::byte>(frame).next()) return std::nullopt;
   if (whole_ring_ && in == Side::kSecondary) return Side::kPrimary;
   const Stretch& stretch = in == Side::kPrimary ? primary_ : secondary_;
   if (stretch.first == stretch.end) return std::nullopt;

@@ -19,10 +19,10 @@ class Chain {
   // direction (receive times of the clocks): about 1 us in real devices.
   explicit Chain(std::vector<Device*> devices, Time wire = std::chrono::nanoseconds(1000));
 
-  // A frame comes in at one side: it passes the devices in place, gets the reply bit of the source address, and leaves
-  // at the side that is returned. Nothing: not an EtherCAT frame with at least one whole datagram, or our reply
-  // already, or nobody is there (the first device has no power): then nothing comes back. From the secondary side of a
-  // whole ring it passes untouched: devices process on the way from port 0 to port 1 only.
+  // A frame comes in at one side: it passes the devices in place, gets the reply bit of the source address (a master's
+  // own address may have it already), and leaves at the side that is returned. Nothing: not an EtherCAT frame with at
+  // least one whole datagram, or nobody is there (the first device has no power): then nothing comes back. From the
+  // secondary side of a whole ring it passes untouched: devices process on the way from port 0 to port 1 only.
   std::optional<Side> process(Side in, std::span<std::byte> frame, Time now) noexcept;
 
   void set_ring(bool closed_to_master) noexcept;  // a second cable from the last device to the master

@@ -86,7 +86,7 @@ TEST_F(EthercatChain, TheReplyCarriesTheLocallyAdministeredBit) {
   EXPECT_EQ(primary(Command::kBrd, 0, "00").source, std::byte{0x12});
 }
 
-TEST_F(EthercatChain, OwnRepliesOtherProtocolsAndPiecesAreNotAnswered) {
+TEST_F(EthercatChain, OtherProtocolsAndPiecesAreNotAnswered) {
   std::array<std::byte, kLongestFrame> buffer{};
   FrameWriter writer(buffer, kSource);
   writer.add(Command::kBrd, 0, 0, 1);
@@ -97,11 +97,21 @@ TEST_F(EthercatChain, OwnRepliesOtherProtocolsAndPiecesAreNotAnswered) {
     return chain->process(Side::kPrimary, copy, now).has_value();
   };
   EXPECT_TRUE(answers([](auto&) {}));
-  EXPECT_FALSE(answers([](auto& f) { f[6] |= kReplyBit; }));
   EXPECT_FALSE(answers([](auto& f) { f[13] = std::byte{0xA3}; }));  // EtherType
   EXPECT_FALSE(answers([](auto& f) { f[15] = std::byte{0x40}; }));  // frame type 4: network variables
   EXPECT_FALSE(answers([](auto& f) { f.resize(16 + 12); }));        // the datagram ends too early
   EXPECT_FALSE(answers([](auto& f) { f.clear(); }));
+}
+
+// KickCAT sends from CA:DE:CA:DE:DE:FF, and many a virtual interface has a locally administered address.
+TEST_F(EthercatChain, AMasterWhoseOwnAddressHasTheReplyBitIsAnsweredToo) {
+  std::array<std::byte, kLongestFrame> buffer{};
+  FrameWriter writer(buffer, MacAddress{std::byte{0xCA}, std::byte{0xDE}});
+  writer.add(Command::kBrd, 0, 0, 1);
+  const auto frame = std::span(buffer).first(writer.finish().size());
+  EXPECT_EQ(chain->process(Side::kPrimary, frame, now), Side::kPrimary);
+  EXPECT_EQ(frame[6], std::byte{0xCA});
+  EXPECT_EQ(DatagramWalk<const std::byte>(frame).next()->working_counter(), 3u);
 }
 
 // libethercat counts 16 bytes too many into the frame header's length.
