@@ -196,8 +196,8 @@ bool Master::closed() const noexcept {
   return state_->closing && (!state_->any_port() || std::ranges::all_of(state_->robots, is_closed));
 }
 
-void Master::set_output(std::size_t robot, const image::OutputBytes& output, bool valid) noexcept {
-  if (valid) state_->robots[robot].output = output;
+void Master::set_output(std::size_t robot, const image::OutputBytes& output) noexcept {
+  state_->robots[robot].output = output;
 }
 
 bool Master::take_fresh(std::size_t robot) noexcept { return std::exchange(state_->robots[robot].fresh, false); }

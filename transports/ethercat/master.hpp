@@ -105,8 +105,8 @@ class Master {
   bool closed() const noexcept;
 
   // ---- Robots, in the order of the settings
-  // `valid` false: what was last sent is repeated (zeros before the first): nothing new is asked of the robot.
-  void set_output(std::size_t robot, const image::OutputBytes& output, bool valid) noexcept;
+  // Zeros before the first.
+  void set_output(std::size_t robot, const image::OutputBytes& output) noexcept;
   bool take_fresh(std::size_t robot) noexcept;  // new inputs since the last call
   const image::InputBytes& input(std::size_t robot) const noexcept;
   const Station& station(std::size_t robot) const noexcept;

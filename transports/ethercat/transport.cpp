@@ -138,7 +138,7 @@ void Bus::exchange(Time now, std::span<transports::Exchange> exchanges) noexcept
   if (!arrival) {
     for (std::size_t i = 0; i < exchanges.size(); ++i) {
       // Also what is not to command: the outputs from before a loss must not be the first that a robot gets after it.
-      master_->set_output(i, exchanges[i].output, true);
+      master_->set_output(i, exchanges[i].output);
     }
     begin_cycle(now);
   }

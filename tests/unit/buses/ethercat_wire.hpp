@@ -66,7 +66,7 @@ class EthercatWire : public BusWire {
     power(now);
     cable(now);
     device_.tick(now);
-    master_.set_output(0, bench_.exchange.output, true);
+    master_.set_output(0, bench_.exchange.output);
     master_.begin_cycle(now);
     bring_late(now);
     for (auto frame = master_.next_frame(now); !frame.empty(); frame = master_.next_frame(now)) {

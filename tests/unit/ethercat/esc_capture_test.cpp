@@ -1,5 +1,6 @@
 // Start-up of independent masters with independent devices, played to this ESC: the same requests have to give the same
-// answers. Recorded between SOEM, ethercrab, libethercat, KickCAT and SOES (tests/captures/ethercat/esc); no robot was there.
+// answers. Recorded between SOEM, ethercrab, libethercat, KickCAT and SOES (tests/captures/ethercat/esc); no robot was
+// there.
 #include <fstream>
 #include <sstream>
 

@@ -22,8 +22,7 @@ TEST_P(MasterStart, EveryRobotBecomesOperationalAndImagesPassBothWays) {
   const std::size_t count = GetParam();
   Segment segment(settings_for(count));
   ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
-  for (std::size_t i = 0; i < count; ++i)
-    segment.master().set_output(i, output_of(static_cast<std::uint8_t>(i + 1)), true);
+  for (std::size_t i = 0; i < count; ++i) segment.master().set_output(i, output_of(static_cast<std::uint8_t>(i + 1)));
   segment.run(5ms);
   for (std::size_t i = 0; i < count; ++i) {
     EXPECT_EQ(segment.device(i).output(), output_of(static_cast<std::uint8_t>(i + 1)));
@@ -55,17 +54,12 @@ TEST(MasterStart, OneFrameACycleCarriesFourRobotsAndFiveTakeTwo) {
   }
 }
 
-TEST(MasterStart, InvalidOutputsRepeatWhatWasLastValid) {
+TEST(MasterStart, SendsZerosBeforeTheFirstOutputs) {
   Segment segment(settings_for(1));
   ASSERT_TRUE(segment.start());
   segment.run(3ms);
   EXPECT_EQ(segment.device(0).output(), output_of(0));
-  segment.master().set_output(0, output_of(7), false);
-  segment.run(3ms);
-  EXPECT_EQ(segment.device(0).output(), output_of(0));
-  segment.master().set_output(0, output_of(7), true);
-  segment.run(3ms);
-  segment.master().set_output(0, output_of(9), false);
+  segment.master().set_output(0, output_of(7));
   segment.run(3ms);
   EXPECT_EQ(segment.device(0).output(), output_of(7));
 }
@@ -81,7 +75,7 @@ void expect_separate(Segment& segment) {
     }
   };
   ASSERT_TRUE(segment.start());
-  segment.master().set_output(0, output_of(5), true);
+  segment.master().set_output(0, output_of(5));
   segment.run(10ms);
   EXPECT_FALSE(lrw);
   EXPECT_TRUE(lrd && lwr);
@@ -239,12 +233,12 @@ TEST(MasterStart, FramesInBetweenStayShortHoweverManyWantSomething) {
 TEST(MasterStart, ARobotThatAnotherMasterLeftRunningDoesNotTakeOutputsOfOthers) {
   Segment first(settings_for(2));
   ASSERT_TRUE(first.start());
-  first.master().set_output(0, output_of(1), true);
+  first.master().set_output(0, output_of(1));
   first.run(3ms);
   MasterSettings settings;
   settings.robots = {{1, std::nullopt}};
   Master second(settings);
-  second.set_output(0, output_of(2), true);
+  second.set_output(0, output_of(2));
   first.go_on_with(second);
   ASSERT_TRUE(first.run(20s, [&] { return second.station(0).operational(); })) << second.trouble(0);
   first.run(1s);

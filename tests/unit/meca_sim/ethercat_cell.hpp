@@ -120,7 +120,7 @@ class EthercatCell {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       image::OutputBytes bytes{};
       image::encode_outputs(outputs[i], {}, bytes);
-      master.set_output(i, bytes, true);
+      master.set_output(i, bytes);
     }
   }
   void send_frames() {
