@@ -125,16 +125,17 @@ bool Scan::received(Bytes frame, Time now) {
   if (!walk.next()) return false;
   MacAddress source;
   std::ranges::copy(frame.subspan(kSourceAt, source.size()), source.begin());
-  if (source == settings_.source) {
-    ++echoes_;
-    return false;
-  }
   source[0] &= ~kReplyBit;
   if (source != settings_.source) {
     ++frames_of_others_;
     return false;
   }
   if (in_flight_.empty() || !is_answer(frame)) return false;
+  // Not by the reply bit: public simulators do not set it. But even who is not addressed adds one to ADP.
+  if (std::ranges::equal(frame.first(std::min(frame.size(), in_flight_.size())), in_flight_)) {
+    ++echoes_;
+    return false;
+  }
   in_flight_ = {};
   take(frame, now);
   return true;

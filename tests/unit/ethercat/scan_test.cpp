@@ -53,7 +53,7 @@ struct Rig {
   Time now{};
   std::function<bool()> lose = [] { return false; };  // the frame that is on its way
   std::vector<Bytes> before_reply;                    // frames of others that arrive first
-  bool loop = false;
+  bool loop = false, reply_bit = true;
   std::uint64_t sent = 0;
 
   explicit Rig(std::size_t count) : devices(count) {}
@@ -77,7 +77,7 @@ struct Rig {
       DatagramWalk<std::byte> walk(frame);
       while (auto d = walk.next()) pass(device, *d);
     }
-    frame[6] |= kReplyBit;
+    if (reply_bit) frame[6] |= kReplyBit;
     return frame;
   }
 
@@ -251,6 +251,16 @@ TEST(Scan, OfALoopSeesItsOwnFramesAndNoDevice) {
   EXPECT_TRUE(scan.done());
   EXPECT_THAT(scan.devices(), IsEmpty());
   EXPECT_EQ(scan.echoes(), 10u);
+}
+
+// KickCAT's simulator does not.
+TEST(Scan, TakesAnswersOfDevicesThatDoNotSetTheReplyBit) {
+  Rig rig(2);
+  rig.reply_bit = false;
+  Scan scan;
+  EXPECT_EQ(rig.scan(scan).size(), 2u);
+  EXPECT_TRUE(scan.devices()[1].identity);
+  EXPECT_EQ(scan.echoes(), 0u);
 }
 
 TEST(Scan, IgnoresTheFramesOfAMasterBesideIt) {
