@@ -113,11 +113,13 @@ void Client::prepare_robot() {
     if (monotonic_now() > patience) throw std::runtime_error("the bridge was not found on DDS within 20 s");
   }
   for (const auto kind : {CommandKind::TAKE_CONTROL, CommandKind::ACTIVATE, CommandKind::HOME}) {
-    // Refused until the bridge knows the robot's firmware.
+    // Refused until there is a link, and the bridge knows the robot's firmware.
+    using Reason = meca500::ReceiptReason;
     meca500::CommandReceipt end;
     do {
       end = finish(make(kind));
-    } while (end.reason() == meca500::ReceiptReason::REASON_FIRMWARE_UNKNOWN && monotonic_now() < patience);
+    } while ((end.reason() == Reason::REASON_NO_LINK || end.reason() == Reason::REASON_FIRMWARE_UNKNOWN) &&
+             monotonic_now() < patience);
     if (end.state() != meca500::ReceiptState::COMPLETED) {
       throw std::runtime_error("preparing the robot: " + end.text().to_string());
     }

@@ -5,8 +5,14 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace meca::bench {
+
+// This machine does not permit what has to be measured.
+struct NotTold : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Setting {
   std::filesystem::path bridge;  // the meca-bridge program

@@ -17,6 +17,13 @@ dds::ParticipantOptions options(const Setting& setting) {
 
 }  // namespace
 
+long long counter_of(const meca500::BridgeStatus& status, std::string_view name) {
+  for (const auto& counter : status.transport_counters()) {
+    if (std::string_view(counter.name().c_str()) == name) return counter.value();
+  }
+  return 0;
+}
+
 StatusWatch::StatusWatch(const Setting& setting) : participant(options(setting)) {
   reader = participant.create_reader<meca500::BridgeStatus>(
       "meca500/BridgeStatus", {dds::Reliability::kReliable, dds::Durability::kTransientLocal, 10});
@@ -37,6 +44,7 @@ void StatusWatch::run(std::chrono::seconds duration) {
       lateness_max_us = std::max(lateness_max_us, static_cast<double>(sample.wakeup_lateness_max_us()));
       mean_sum_us += sample.wakeup_lateness_mean_us();
       ++means;
+      if (each) each(sample);
     }
   }
   if (last.empty())
@@ -57,11 +65,7 @@ unsigned long long StatusWatch::most_missed_cycles() const {
 
 long long StatusWatch::total_of_counter(std::string_view name) const {
   long long sum = 0;
-  for (const auto& [robot, status] : last) {
-    for (const auto& counter : status.transport_counters()) {
-      if (std::string_view(counter.name().c_str()) == name) sum += counter.value();
-    }
-  }
+  for (const auto& [robot, status] : last) sum += counter_of(status, name);
   return sum;
 }
 

@@ -13,6 +13,9 @@
 
 namespace meca::bench {
 
+// 0 for one that the transport does not have.
+long long counter_of(const meca500::BridgeStatus& status, std::string_view name);
+
 // The last BridgeStatus of every robot, and the worst and the mean of the lateness they reported on the way.
 struct StatusWatch {
   explicit StatusWatch(const Setting& setting);
@@ -24,6 +27,7 @@ struct StatusWatch {
   // Of a transport counter, all robots together; 0 for one that the transport does not have.
   long long total_of_counter(std::string_view name) const;
 
+  std::function<void(const meca500::BridgeStatus&)> each;  // called with every one, if set
   dds::Participant participant;
   dds::Reader<meca500::BridgeStatus> reader;
   std::map<std::string, meca500::BridgeStatus> last;
