@@ -29,6 +29,11 @@ class RoundTrips {
   int seconds_ = 0;
 };
 
+// The cycle thread of the bridge, the bare loop and the robots' end all ask for this SCHED_FIFO priority.
+inline constexpr int kPriority = 48;
+// For the calling thread, not for those that it starts. False where it is refused.
+bool make_real_time();
+
 struct BareLoopOptions {
   std::vector<std::size_t> frames;   // bytes of each frame of a cycle
   std::chrono::nanoseconds begin{};  // CLOCK_MONOTONIC: of the first cycle, which decides the phase of all

@@ -105,6 +105,7 @@ EthercatCell::EthercatCell(int robots, bool stamped)
       cyclic_(kEtherType),
       bare_(kBareEtherType),
       poller_(2) {
+  real_time_ = make_real_time();
   poller_.watch(kRobotsSlot, cyclic_.socket.descriptor());
   poller_.watch(kBareSlot, bare_.socket.descriptor());
 }

@@ -39,6 +39,9 @@ class EthercatCell {
   // Until every robot is in OP and gets outputs; throws std::runtime_error after 30 s.
   void run_until_operational();
 
+  // Bridge, bare loop and robots have what they asked for (bare_ethernet.hpp): then other programs hardly disturb them.
+  bool real_time() const { return real_time_; }
+
   void restart();  // forgets what was measured
   Rhythm& rhythm() { return cyclic_.rhythm; }
   Rhythm& bare_rhythm() { return bare_.rhythm; }
@@ -72,7 +75,7 @@ class EthercatCell {
 
   std::vector<ethercat::Device> devices_;
   ethercat::Chain chain_;
-  bool stamped_;
+  bool stamped_, real_time_ = false;
   Port cyclic_, bare_;
   net::Poller poller_;
   std::vector<std::size_t> sizes_, current_sizes_;

@@ -29,6 +29,7 @@ std::string configuration(const Setting& setting, int robots, bool whole_image =
   std::ostringstream out;
   out << "dds:\n  domain: " << setting.domain << "\n";
   if (whole_image) out << "  topics:\n    CyclicState: {rate: every_cycle}\n";
+  out << "realtime: {priority: " << kPriority << "}\n";
   // The machine may be busy: robots that leave OP would hide what is measured.
   out << "log: {level: error}\nethercat:\n  segments:\n    - {interface: " << kMasterInterface
       << ", watchdog: 500ms}\nrobots:\n";
@@ -137,6 +138,7 @@ json measure_ethercat_period(const Setting& setting) {
     ours["robots_us"] = cell.robots_us();
     ours["missed_cycles"] = got.missed_cycles;
     ours["lost_frames"] = got.lost_frames;
+    ours["real_time"] = cell.real_time();
     ours["load"] = load();
     for (const char* figure : {"trip_p50_us", "trip_p99_us", "trip_max_us"}) bare[figure] = got.bare[figure];
     bare["missed_cycles"] = got.bare["missed_cycles"];
@@ -155,6 +157,7 @@ json measure_ethercat_period(const Setting& setting) {
 json measure_ethercat_latency(const Setting& setting) {
   const EthercatCable cable;
   json ours, raw, result;
+  bool real_time = false;
   {
     EthercatCell cell(1, true);
     BridgeProcess bridge(setting, configuration(setting, 1, true));
@@ -164,6 +167,7 @@ json measure_ethercat_latency(const Setting& setting) {
     Process reader(command);
     while (reader.running()) cell.run(50ms);
     ours = json::parse(reader.finish());
+    real_time = cell.real_time();
     bridge.process.stop();
   }
   {
@@ -181,6 +185,7 @@ json measure_ethercat_latency(const Setting& setting) {
   row["raw_p99_us"] = raw["p99_us"];
   row["p50_ratio"] = ratio(ours["p50_us"], raw["p50_us"]);
   row["p99_ratio"] = ratio(ours["p99_us"], raw["p99_us"]);
+  row["real_time"] = real_time;
   row["load"] = load();
   return result;
 }
@@ -211,6 +216,7 @@ json measure_ethercat_robots(const Setting& setting) {
     row["trip_p99_us"] = got.trips.p99_us();
     row["bare_p99_us"] = got.bare["trip_p99_us"];
     row["robots_us"] = cell.robots_us();
+    row["real_time"] = cell.real_time();
     row["load"] = load();
     result.push_back(row);
   }
