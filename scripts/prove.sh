@@ -26,9 +26,13 @@ prove() {
     million)
       export MECA_COMMANDS=${MECA_COMMANDS:-1000000}
       in_test test_control 'Million*'
-      in_test test_buses '*OverABus*'
+      in_test test_buses '*OverABus.executed*'
       ;;
-    faults) MECA_FAULT_SEQUENCES=${MECA_FAULT_SEQUENCES:-10000} in_test test_control '*FaultAndRecovery*' ;;
+    faults)
+      export MECA_FAULT_SEQUENCES=${MECA_FAULT_SEQUENCES:-10000}
+      in_test test_control '*FaultAndRecovery*'
+      in_test test_buses '*OverABus.faults*'
+      ;;
     stops) in_test test_stops '*' ;;
     deaths | fight | throughput) measured "$@" ;;
     *) die "prove: '$1' is not million, faults, deaths, fight, throughput or stops" ;;

@@ -2,6 +2,7 @@
 #include <tuple>
 
 #include "tests/unit/buses/buses.hpp"
+#include "tests/unit/control/fault_theatre.hpp"
 #include "tests/unit/control/million.hpp"
 #include "tests/unit/control/sim_bench.hpp"
 
@@ -33,6 +34,14 @@ TEST_P(OverABus, executed_are_exactly_those_with_a_completed_receipt) {
               wire->figures().c_str());
   EXPECT_GT(wire->connections(), 5U) << "the cuts were no cuts";
   EXPECT_LE(million.figures().unknown, wire->connections()) << "more than one in a lost connection";
+}
+
+TEST_P(OverABus, faults_set_nothing_going_that_nobody_asked_for_after_them) {
+  Theatre theatre(layout(), 0, 7, settings_on(bus()));
+  const auto wire = lay_wire(bus(), theatre);
+  theatre.play(fault_sequences(500));
+  std::printf("%s\n", wire->figures().c_str());
+  EXPECT_GT(wire->connections(), 5U);
 }
 
 // A bridge on that bus and a robot that is activated and homed.

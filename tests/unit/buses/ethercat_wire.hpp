@@ -72,6 +72,7 @@ class EthercatWire : public BusWire {
     for (auto frame = master_.next_frame(now); !frame.empty(); frame = master_.next_frame(now)) {
       carry({frame.begin(), frame.end()}, now);
     }
+    device_.tick(now);  // the robot acts on what has just come
     step_robot();
     tell_bridge();
     bench_.lose_output = bench_.lose_input = bench_.repeat_output = bench_.repeat_input = false;
@@ -123,8 +124,10 @@ class EthercatWire : public BusWire {
       connected_ = device_.operational();
       connections_ += connected_;
       connected_ ? bench_.sim->restore_connection() : bench_.sim->drop_connection();
+      if (!connected_ && bench_.on_heard) bench_.on_heard({});
     }
     if (device_.take_fresh()) {
+      if (bench_.on_heard) bench_.on_heard(device_.output());
       bench_.sim->step(device_.output(), std::endian::little, bench_.settings.cycle);
     } else {
       bench_.sim->step_without_outputs(bench_.settings.cycle);

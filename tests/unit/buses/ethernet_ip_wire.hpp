@@ -124,8 +124,10 @@ class EthernetIpWire : public BusWire {
   void step_robot() {
     if (connected_ && !adapter_.connected()) bench_.sim->drop_connection();
     if (!connected_ && adapter_.connected()) bench_.sim->restore_connection();
+    if (connected_ && !adapter_.connected() && bench_.on_heard) bench_.on_heard({});
     connected_ = adapter_.connected();
     if (adapter_.take_fresh()) {
+      if (bench_.on_heard) bench_.on_heard(adapter_.output());
       bench_.sim->step(adapter_.output(), std::endian::little, bench_.settings.cycle);
     } else {
       bench_.sim->step_without_outputs(bench_.settings.cycle);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -176,6 +177,8 @@ class Bench {
   TinyRobot robot;
   sim::Robot* sim = nullptr;   // in place of the tiny robot, when set
   std::function<void()> wire;  // a fieldbus in place of the direct link, when set
+  // By that fieldbus: outputs that the robot's end takes, before the robot acts; empty: it has lost its host.
+  std::function<void(std::span<const std::byte>)> on_heard;
   Layout layout;
   std::unique_ptr<bridge::StepResult> result;
   std::unique_ptr<bridge::Cycle> cycle;
