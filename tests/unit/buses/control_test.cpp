@@ -219,6 +219,31 @@ TEST_P(AtWork, a_bridge_that_was_killed_finds_the_robot_again_and_moves_nothing)
   resume();
 }
 
+// Firmware 9 goes on as soon as Pause does not stand; EtherCAT has no idle that would leave it alone until the new
+// bridge has seen it.
+TEST(OverEthercat, a_paused_robot_that_kept_its_queue_is_not_set_going_by_a_new_bridge) {
+  for (const Layout layout : {Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11}) {
+    SCOPED_TRACE(name_of(layout));
+    SimBench b(layout);
+    EthercatWire wire(b);
+    wire.keep_queue_on_loss();
+    b.make_ready();
+    b.move(90);
+    run(b, 100ms);
+    EXPECT_OUTCOME(b.outcome(kPauseMotion), kCompleted, Reason::kNone);
+    run(b, 500ms);
+    const float at = b.model.inputs().target_joint_set.joints[0];
+    b.cycle = std::make_unique<bridge::Cycle>(b.settings);
+    b.exchange = {};
+    b.keep_alive = false;
+    run(b, 3s);
+    EXPECT_EQ(b.result->record.quality, Quality::kGood);
+    EXPECT_EQ(b.model.inputs().target_joint_set.joints[0], at);
+    EXPECT_TRUE(b.model.inputs().motion_status.paused);
+    EXPECT_FALSE(b.model.inputs().motion_status.eob) << "it has nothing to go on with, so this proves nothing";
+  }
+}
+
 const auto kEverywhere =
     testing::Combine(testing::Values(Bus::kEthernetIp, Bus::kEthercat),
                      testing::Values(Layout::kFirmware9, Layout::kFirmware10, Layout::kFirmware11));

@@ -34,9 +34,8 @@ class EthercatWire : public BusWire {
            std::to_string(master.unexpected_frames) + ", scans " + std::to_string(master.scans) +
            "; watchdog expiries " + std::to_string(device_.counters().watchdog_expiries);
   }
-  const ethercat::Device& device() const { return device_; }
-  ethercat::Device& device() { return device_; }
-  const ethercat::Master& master() const { return master_; }
+  // A robot that goes on with its queue when it loses its host: which of both a Meca500 does is not published.
+  void keep_queue_on_loss() { keeps_queue_ = true; }
 
  private:
   using Frame = std::vector<std::byte>;
@@ -123,7 +122,7 @@ class EthercatWire : public BusWire {
     if (connected_ != device_.operational()) {
       connected_ = device_.operational();
       connections_ += connected_;
-      connected_ ? bench_.sim->restore_connection() : bench_.sim->drop_connection();
+      if (!keeps_queue_) connected_ ? bench_.sim->restore_connection() : bench_.sim->drop_connection();
       if (!connected_ && bench_.on_heard) bench_.on_heard({});
     }
     if (device_.take_fresh()) {
@@ -151,7 +150,7 @@ class EthercatWire : public BusWire {
   ethercat::Master master_;
   const bridge::Cycle* life_ = nullptr;
   int lives_ = 0;
-  bool connected_ = false, was_present_ = true, carrier_ = true;
+  bool connected_ = false, was_present_ = true, carrier_ = true, keeps_queue_ = false;
   std::uint64_t connections_ = 0;
   unsigned lost_replies_ = 0;
   Time next_look_{};
