@@ -66,11 +66,12 @@ need() {
 # build PRESET [TARGET...]: configures when needed and builds; without targets everything.
 build() {
   local preset=$1
+  local log=build/configure-$preset.log
   shift
-  [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >"/tmp/meca-configure.$$" 2>&1 || {
-    cat "/tmp/meca-configure.$$" >&2
+  mkdir -p build
+  [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >"$log" 2>&1 || {
+    cat "$log" >&2
     die "configuring the preset '$preset' failed (see above)"
   }
-  rm -f "/tmp/meca-configure.$$"
   cmake --build "build/$preset" --parallel "$jobs" ${1:+--target "$@"}
 }

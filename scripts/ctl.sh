@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # ./meca ctl WORDS: meca-ctl; while './meca run ethercat' runs, inside of its network.
 . scripts/common.sh
+. scripts/programs.sh
 ctl=build/release/bin/meca-ctl
 [ -x "$ctl" ] || die "there is no $ctl yet; './meca build' makes it"
 
-pid=$(cat build/run_ethercat.pid 2>/dev/null || true)
-# A file that a killed run has left behind means nobody.
-grep -qs run_ethercat.sh "/proc/${pid:-none}/cmdline" || exec "$ctl" "$@"
+pid=$(ethercat_run)
+[ -n "$pid" ] || exec "$ctl" "$@"
 
 enter=(nsenter --target "$pid" --net)
 if [ -r "/proc/$pid/ns/net" ] && [ -r "/proc/$pid/ns/user" ]; then

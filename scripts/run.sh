@@ -3,6 +3,7 @@
 # ./meca run ethernet_ip: the bridge and meca-sim as two programs that speak EtherNet/IP. Arguments go to meca-sim.
 # ./meca run ethercat: the same over EtherCAT with three robots (run_ethercat.sh).
 . scripts/common.sh
+. scripts/programs.sh
 if [ "${1:-}" = ethercat ]; then
   shift
   exec scripts/run_ethercat.sh "$@"
@@ -26,7 +27,10 @@ TEXT
 
 if [ "${1:-}" != ethernet_ip ]; then
   build release meca-bridge meca-ctl
-  [ $# -gt 0 ] || set -- --config config/builtin.yaml
+  if [ $# = 0 ]; then
+    one_at_a_time
+    set -- --config config/builtin.yaml
+  fi
   what_to_type "The bridge runs" \
     "  build/release/bin/meca-ctl sim press p-stop2      its buttons; 'meca-ctl sim' lists them"
   exec build/release/bin/meca-bridge "$@"
@@ -34,22 +38,10 @@ fi
 
 shift
 build release meca-bridge meca-ctl meca-sim
+one_at_a_time ethernet_ip
 what_to_type "The bridge (127.0.0.1) and a simulated robot (127.0.0.2) run, with EtherNet/IP between them," \
   "  build/release/bin/meca-ctl sim unplug             faults and buttons; 'meca-ctl sim' lists them
   build/release/bin/meca-ctl sim plug
   sudo tshark -i lo -f 'tcp port 44818 or udp port 2222'"
 
-sim='' bridge=''
-stop() { kill -TERM $bridge $sim 2>/dev/null || true; }
-trap stop EXIT INT TERM
-build/release/bin/meca-sim --bind 127.0.0.2 "$@" &
-sim=$!
-build/release/bin/meca-bridge --config config/ethernet_ip_demo.yaml &
-bridge=$!
-# Whoever ends first ends both. A signal interrupts the first wait; the bridge then has its time to say good-bye.
-wait -n || true
-stop
-status=0
-wait "$bridge" || status=$?
-wait "$sim" || status=$?
-exit "$status"
+run_pair config/ethernet_ip_demo.yaml --bind 127.0.0.2 "$@" 9>&-

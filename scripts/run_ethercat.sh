@@ -2,7 +2,7 @@
 # ./meca run ethercat: the bridge and three simulated robots in one EtherCAT segment, as two programs with real frames
 # between them at 1 kHz, in a network of their own. Arguments go to meca-sim. 'ctl.sh' reaches into that network.
 . scripts/common.sh
-pid_file=build/run_ethercat.pid
+. scripts/programs.sh
 
 # How to get a network of its own: what is in there touches nobody else's interfaces, and nothing is left of it.
 find_way_in() {
@@ -22,12 +22,16 @@ none of this: config/ethercat_demo.yaml says how"
 }
 
 if [ "${1:-}" != --inside ]; then
+  one_at_a_time ethercat
+  exec 9>&- # sudo would: whoever is inside asks again
   need build ethercat
   build release meca-bridge meca-ctl meca-sim
   find_way_in
   exec "${way_in[@]}" "$0" --inside "$@"
 fi
 shift
+
+one_at_a_time ethercat
 
 lay_cable() {
   ip link set lo up && # DDS between bridge and meca-ctl
@@ -36,8 +40,6 @@ lay_cable() {
 }
 lay_cable || die "no virtual cable could be laid (see above); it needs the kernel's veth devices"
 
-mkdir -p build
-echo $$ >"$pid_file"
 cat <<TEXT
 
 The bridge and three simulated robots run in this terminal until Ctrl-C: arm1, arm2 and arm3 in one EtherCAT segment,
@@ -56,21 +58,4 @@ in there. In a second terminal:
 
 TEXT
 
-interrupted=''
-trap 'interrupted=1' INT TERM
-build/release/bin/meca-sim --protocol ethercat --interface meca1 --count 3 "$@" &
-sim=$!
-build/release/bin/meca-bridge --config config/ethercat_demo.yaml &
-bridge=$!
-# Whoever ends first ends both. The bridge before the robots: its good-bye, all of them to INIT, is worth seeing.
-status=0
-wait -n || status=$?
-[ -z "$interrupted" ] || status=0
-rm -f "$pid_file"
-for pid in "$bridge" "$sim"; do
-  kill -TERM "$pid" 2>/dev/null || true
-  ended=0
-  wait "$pid" || ended=$?
-  [ "$status" != 0 ] || status=$ended
-done
-exit "$status"
+run_pair config/ethercat_demo.yaml --protocol ethercat --interface meca1 --count 3 "$@" 9>&-
