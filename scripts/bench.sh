@@ -8,7 +8,7 @@
 which=${1:-all}
 [ $# -gt 0 ] && shift
 mkdir -p build/bench
-need build
+need build ethercat
 
 image() {
   build release image-bench

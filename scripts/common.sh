@@ -33,7 +33,7 @@ packages_for() {
       # Fast DDS 2 was called fastrtps.
       case $(debian_version) in 12*) echo libfastrtps-dev ;; *) echo libfastdds-dev ;; esac
       ;;
-    ethercat) echo iproute2 ;;
+    ethercat) echo iproute2 ;; # virtual cables, for tests and bench as well
     clang) echo clang libclang-rt-dev ;;
     format) echo clang-format ;;
     debootstrap) echo debootstrap ;;

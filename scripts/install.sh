@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
 # ./meca install: what the build and the tests need, from Debian's packages.
 . scripts/common.sh
-need build
+need build ethercat

@@ -7,7 +7,7 @@ which=${1:-both}
 case $which in asan | tsan | both) ;; *) die "sanitize: '$which' is not asan or tsan" ;; esac
 
 asan() {
-  need build
+  need build ethercat
   build asan
   # Without the proofs by many processes at once: what is slowed down so much comes to no end in their time.
   # Fast DDS keeps singletons until exit, so leaks are only those that LeakSanitizer can prove; its default is right.
@@ -18,7 +18,7 @@ asan() {
 }
 
 tsan() {
-  need build clang
+  need build ethercat clang
   # Only what has threads: the machines without I/O have none, and instrumenting them proves nothing.
   build tsan meca-bridge meca-ctl meca-sim test_bridge test_net test_e2e test_program test_meca_sim_program cyclone_every_topic cyclone_move cyclone_kinematics_test
   TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp halt_on_error=1 second_deadlock_stack=1" \

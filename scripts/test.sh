@@ -5,7 +5,7 @@ if [ "${1:-}" = --debian13 ]; then
   shift
   exec scripts/debian13.sh "$@"
 fi
-need build
+need build ethercat
 build release
 # --output-on-failure shows why; ctest's own closing lines name what failed and what was skipped.
 exec ctest --test-dir build/release --output-on-failure --no-tests=error -j "$jobs" --timeout 300 "$@"
