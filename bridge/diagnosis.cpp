@@ -58,12 +58,15 @@ Finding link(const CycleRecord& record) {
     case transports::LinkState::kUp:
       break;
     case transports::LinkState::kConnecting:
-      return because("connecting to the robot" + detail, "wait; when it stays like this, check address and protocol");
+      return because("connecting to the robot" + detail,
+                     "wait; when it stays like this, check which fieldbus the robot has switched on, and the cables");
     case transports::LinkState::kDown: {
       // An R3 under E-Stop has no power and says nothing. Which robot it is, is asked anew with every link.
       const std::string e_stop = record.product_type == kProductR4 ? "" : " (E-Stop takes all power of a Meca500 R3)";
-      return because("no link to the robot" + detail,
-                     "check its power" + e_stop + ", the cable and the address; the bridge keeps trying");
+      return because(
+          "no link to the robot" + detail,
+          "check its power" + e_stop +
+              ", the cables to it, and its address or position in the configuration; the bridge keeps trying");
     }
   }
   if (record.quality == Quality::kDisconnected) {
@@ -86,7 +89,7 @@ Finding firmware(const CycleRecord& record) {
 Finding stale_image(const CycleRecord& record) {
   if (record.quality != Quality::kStale) return {};
   return because("no fresh image from the robot: what is shown is old",
-                 "check cable and network load; commands work again with the next image");
+                 "check the cables and the load of network and machine; commands work again with the next image");
 }
 
 // ---- Safety

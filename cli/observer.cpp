@@ -91,7 +91,10 @@ void Observer::discover(const std::string& wanted, std::chrono::nanoseconds time
   if (!robots_.empty()) choose(wanted);  // throws: others are there, but not this one
   throw NoBridge("no bridge found on " + bus_.where() +
                  ". Is meca-bridge running, in the same domain (--domain) and with the same topic prefix (--prefix)? "
-                 "In containers: do both share /dev/shm, or does meca-ctl run with --no-shared-memory?");
+                 "Is this its network? A bridge in a container or a network namespace is asked from in there: 'docker "
+                 "compose exec bridge meca-ctl', and './meca ctl' while './meca run ethercat' runs. Does its "
+                 "configuration say dds.shared_memory: true? Then both share /dev/shm, as the same user, or neither "
+                 "uses it.");
 }
 
 void Observer::fill(const std::string& wanted, std::chrono::nanoseconds patience) {

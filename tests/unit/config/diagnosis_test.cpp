@@ -86,7 +86,7 @@ const Situation kSituations[] = {
        r.link_detail = "no reply to Forward Open";
      },
      "no link to the robot: no reply to Forward Open",
-     "check its power, the cable and the address; the bridge keeps trying"},
+     "check its power, the cables to it, and its address or position in the configuration; the bridge keeps trying"},
     {"LinkDownOfAnUnknownProduct",
      [](CycleRecord& r) {
        r.link = LinkState::kDown;
@@ -94,14 +94,16 @@ const Situation kSituations[] = {
        r.product_type = 0;
      },
      "no link to the robot",
-     "check its power (E-Stop takes all power of a Meca500 R3), the cable and the address; the bridge keeps trying"},
+     "check its power (E-Stop takes all power of a Meca500 R3), the cables to it, and its address or position in the "
+     "configuration; the bridge keeps trying"},
     {"LinkComingUp",
      [](CycleRecord& r) {
        r.link = LinkState::kConnecting;
        r.quality = Quality::kDisconnected;
        r.link_detail = "SAFE_OP";
      },
-     "connecting to the robot: SAFE_OP", "wait; when it stays like this, check address and protocol"},
+     "connecting to the robot: SAFE_OP",
+     "wait; when it stays like this, check which fieldbus the robot has switched on, and the cables"},
     {"LinkUpWithoutAnImageYet", [](CycleRecord& r) { r.quality = Quality::kDisconnected; },
      "no image from the robot yet", "wait; when it stays like this, check cable and protocol"},
     {"FirmwareUnknown",
@@ -120,7 +122,7 @@ const Situation kSituations[] = {
      "correct 'firmware' of this robot in the configuration, or write auto, and restart the bridge"},
     {"StaleImage", [](CycleRecord& r) { r.quality = Quality::kStale; },
      "no fresh image from the robot: what is shown is old",
-     "check cable and network load; commands work again with the next image"},
+     "check the cables and the load of network and machine; commands work again with the next image"},
 
     {"EStopPressedR4",
      [](CycleRecord& r) {

@@ -79,7 +79,7 @@ std::vector<Situation> no_way_to_the_robot() {
       {"the_bridge_is_still_connecting",
        [](Cell& c) { show_link(c, LinkState::kConnecting, "SAFE_OP"); },
        "connecting to the robot: SAFE_OP",
-       "wait; when it stays like this, check address and protocol",
+       "wait; when it stays like this, check which fieldbus the robot has switched on, and the cables",
        {{"wait;", [](Cell& c) { c.plug_in(); }}},
        robot()},
       {"the_link_is_up_and_no_image_has_come",
@@ -94,8 +94,8 @@ std::vector<Situation> no_way_to_the_robot() {
          c.lose_images(10);
        },
        "no fresh image from the robot: what is shown is old",
-       "check cable and network load",
-       {{"check cable and network load", [](Cell& c) { c.steps(1); }}},
+       "check the cables and the load of network and machine",
+       {{"check the cables and the load of network and machine", [](Cell& c) { c.steps(1); }}},
        robot()},
       {"images_stayed_away_for_longer_than_a_program_that_moved_the_robot_could_bear",
        [](Cell& c) {
@@ -104,8 +104,8 @@ std::vector<Situation> no_way_to_the_robot() {
          c.lose_images(300);
        },
        "no fresh image from the robot: what is shown is old",
-       "check cable and network load",
-       {{"check cable and network load", [](Cell& c) { c.steps(1000); }}},
+       "check the cables and the load of network and machine",
+       {{"check the cables and the load of network and machine", [](Cell& c) { c.steps(1000); }}},
        robot()},
   };
 }
