@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bridge/buses.hpp"
@@ -45,8 +46,7 @@ std::vector<std::unique_ptr<RobotChannel>> make_channels(const std::vector<Robot
 struct Bridge::Impl {
   explicit Impl(const Config& config);
   std::vector<RobotChannel*> channel_pointers() const;
-  void make_loops(const Config& config);
-  std::vector<PublishedRobot> published_robots(const Config& config) const;
+  std::vector<PublishedLoop> make_loops(const Config& config);
 
   static constexpr std::size_t kReaderEvents = 1024;
 
@@ -57,11 +57,6 @@ struct Bridge::Impl {
   dds::Participant participant;
   Topics topics;
   std::vector<std::unique_ptr<Loop>> loops;
-  struct Place {
-    Loop* loop = nullptr;
-    std::span<const transports::CounterInfo> counters;
-  };
-  std::vector<Place> places;  // by robot
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<Intake> intake;
   bool running = false;
@@ -72,29 +67,25 @@ Bridge::Impl::Impl(const Config& config)
       channels(make_channels(config.robots)),
       participant(participant_options(config.dds)),
       topics(participant, config.dds) {
-  make_loops(config);
-  publisher = std::make_unique<Publisher>(topics, published_robots(config), reader_events, wakeup, print);
+  publisher = std::make_unique<Publisher>(topics, make_loops(config), reader_events, wakeup, print);
   intake = std::make_unique<Intake>(participant, config.dds, channel_pointers(), reader_events, wakeup);
 }
 
-void Bridge::Impl::make_loops(const Config& config) {
-  places.resize(config.robots.size());
+std::vector<PublishedLoop> Bridge::Impl::make_loops(const Config& config) {
+  std::vector<PublishedLoop> published;
   for (LoopPlan& plan : open_buses(config, channels)) {
     loops.push_back(std::make_unique<Loop>(std::move(plan.buses), plan.cycle, config.realtime, wakeup));
-    for (const LoopPlan::Robot& robot : plan.robots) places[robot.index] = {loops.back().get(), robot.counters};
+    std::vector<PublishedRobot> robots;
+    for (const LoopPlan::Robot& robot : plan.robots) {
+      robots.push_back({.channel = channels[robot.index].get(),
+                        .transport = std::string(to_string(config.robots[robot.index].type)),
+                        .counters = robot.counters});
+    }
+    published.push_back({.cycle = plan.cycle,
+                         .pace = [loop = loops.back().get()] { return loop->pace(); },
+                         .robots = std::move(robots)});
   }
-}
-
-std::vector<PublishedRobot> Bridge::Impl::published_robots(const Config& config) const {
-  std::vector<PublishedRobot> robots;
-  for (std::size_t i = 0; i < config.robots.size(); ++i) {
-    robots.push_back({.channel = channels[i].get(),
-                      .transport = std::string(to_string(config.robots[i].type)),
-                      .cycle = places[i].loop->cycle(),
-                      .pace = [loop = places[i].loop] { return loop->pace(); },
-                      .counters = places[i].counters});
-  }
-  return robots;
+  return published;
 }
 
 std::vector<RobotChannel*> Bridge::Impl::channel_pointers() const {

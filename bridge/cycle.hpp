@@ -55,6 +55,7 @@ struct CycleRecord {
   Quality quality = Quality::kDisconnected;
   transports::LinkState link = transports::LinkState::kDown;
   transports::LinkDetail link_detail;
+  bool closing = false;  // the last record: the bridge has said good-bye and stops
   std::array<std::int64_t, transports::kMostCounters> transport_counters{};  // of Transport::counters()
   bool firmware_known = false;
   bool firmware_mismatch = false;  // the robot reports another layout than the configuration expects

@@ -124,6 +124,7 @@ void BusGroup::close(Stamp stamp) noexcept {
       record.quality = Quality::kDisconnected;
       record.link = transports::LinkState::kDown;
       record.link_detail = "the bridge has stopped";
+      record.closing = true;
       if (record.control.owned) {
         record.control.owned = false;
         record.control.last_owner = record.control.owner;

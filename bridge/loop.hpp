@@ -87,7 +87,6 @@ class Loop {
   void request_stop() noexcept { stop_requested_.store(true); }
   void join();
 
-  Time cycle() const noexcept { return cycle_; }
   PaceFacts pace() const noexcept;  // from any thread
 
  private:

@@ -17,14 +17,18 @@ std::int64_t unix_now() {
 
 }  // namespace
 
-Publisher::Publisher(Topics& topics, std::vector<PublishedRobot> robots, SpscQueue<ReaderEvent>& reader_events,
+Publisher::Publisher(Topics& topics, std::vector<PublishedLoop> loops, SpscQueue<ReaderEvent>& reader_events,
                      Wakeup& wakeup, Log log)
     : topics_(topics), reader_events_(reader_events), wakeup_(wakeup), log_(std::move(log)) {
-  for (auto& robot : robots) {
-    RobotPublisher publisher(robot.channel->name, robot.cycle, topics);
-    RobotLog robot_log(robot.channel->name);
-    robots_.push_back(
-        std::make_unique<Robot>(Robot{std::move(robot), std::move(publisher), std::move(robot_log), {}, 0}));
+  for (auto& loop : loops) {
+    std::vector<Robot> robots;
+    std::vector<std::string> names;
+    for (auto& robot : loop.robots) {
+      const std::string& name = robot.channel->name;
+      names.push_back(name);
+      robots.push_back({std::move(robot), RobotPublisher(name, loop.cycle, topics), RobotLog(name)});
+    }
+    loops_.push_back({loop.cycle, std::move(loop.pace), LoopLog(names), std::move(robots)});
   }
 }
 
@@ -51,21 +55,23 @@ void Publisher::run() {
 
 void Publisher::run_once(Time now) {
   const std::int64_t unix_ns = unix_now();
-  for (auto& robot : robots_) {
-    drain_records(*robot, now, unix_ns);
-    drain_receipts(*robot);
-    look_at_counters(*robot, now);
+  for (auto& loop : loops_) {
+    for (auto& robot : loop.robots) {
+      drain_records(loop, robot, now, unix_ns);
+      drain_receipts(robot);
+    }
   }
+  look_at_counters(now);
   drain_reader_events();
   print();
 }
 
-void Publisher::drain_records(Robot& robot, Time now, std::int64_t unix_ns) {
+void Publisher::drain_records(const Loop& loop, Robot& robot, Time now, std::int64_t unix_ns) {
   auto& channel = *robot.facts.channel;
   if (channel.records.front() == nullptr) return;
-  const PaceFacts pace = robot.facts.pace();
+  const PaceFacts pace = loop.pace();
   const StatusFacts facts{.transport = robot.facts.transport,
-                          .cycle = robot.facts.cycle,
+                          .cycle = loop.cycle,
                           .missed_cycles = pace.missed_cycles,
                           .records_dropped = channel.records_dropped.load(std::memory_order_relaxed),
                           .wakeup_lateness_max_us = pace.lateness_max_us,
@@ -104,15 +110,19 @@ void Publisher::drain_reader_events() {
   }
 }
 
-void Publisher::look_at_counters(Robot& robot, Time now) {
-  if (now < robot.next_look) return;
-  robot.next_look = now + kCounterPeriod;
-  const auto& channel = *robot.facts.channel;
-  robot.log.look(LogFacts{.missed_cycles = robot.facts.pace().missed_cycles,
-                          .records_dropped = channel.records_dropped.load(std::memory_order_relaxed),
-                          .receipts_lost = channel.receipts_lost.load(std::memory_order_relaxed),
-                          .refused_writes = robot.publisher.refused_writes() + robot.refused_receipts},
-                 now, lines_);
+void Publisher::look_at_counters(Time now) {
+  if (now < next_look_) return;
+  next_look_ = now + kCounterPeriod;
+  for (auto& loop : loops_) {
+    loop.log.look(loop.pace(), now, lines_);
+    for (auto& robot : loop.robots) {
+      const auto& channel = *robot.facts.channel;
+      robot.log.look(LogFacts{.records_dropped = channel.records_dropped.load(std::memory_order_relaxed),
+                              .receipts_lost = channel.receipts_lost.load(std::memory_order_relaxed),
+                              .refused_writes = robot.publisher.refused_writes() + robot.refused_receipts},
+                     now, lines_);
+    }
+  }
 }
 
 void Publisher::print() {

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <thread>
@@ -12,6 +11,7 @@
 
 #include "bridge/channel.hpp"
 #include "bridge/config.hpp"
+#include "bridge/loop_log.hpp"
 #include "bridge/pacer.hpp"
 #include "bridge/robot_log.hpp"
 #include "bridge/robot_publisher.hpp"
@@ -20,11 +20,16 @@
 namespace meca::bridge {
 
 struct PublishedRobot {
-  RobotChannel* channel = nullptr;  // outlives the publisher
-  std::string transport;            // "builtin", ...
-  Time cycle{};
-  std::function<PaceFacts()> pace;                      // of the loop that owns the robot
+  RobotChannel* channel = nullptr;                      // outlives the publisher
+  std::string transport;                                // "builtin", ...
   std::span<const transports::CounterInfo> counters{};  // of its bus
+};
+
+// A loop and the robots that it owns.
+struct PublishedLoop {
+  Time cycle{};
+  std::function<PaceFacts()> pace;
+  std::vector<PublishedRobot> robots;
 };
 
 class Publisher {
@@ -32,7 +37,7 @@ class Publisher {
   using Log = std::function<void(const LogLine&)>;
 
   // `reader_events` and `wakeup` outlive the publisher. `log` is called on the publisher thread only.
-  Publisher(Topics& topics, std::vector<PublishedRobot> robots, SpscQueue<ReaderEvent>& reader_events, Wakeup& wakeup,
+  Publisher(Topics& topics, std::vector<PublishedLoop> loops, SpscQueue<ReaderEvent>& reader_events, Wakeup& wakeup,
             Log log);
   ~Publisher();  // stops
   Publisher(const Publisher&) = delete;
@@ -49,18 +54,24 @@ class Publisher {
     PublishedRobot facts;
     RobotPublisher publisher;
     RobotLog log;
-    Time next_look{};  // at the counters
     std::uint64_t refused_receipts = 0;
   };
+  struct Loop {
+    Time cycle{};
+    std::function<PaceFacts()> pace;
+    LoopLog log;
+    std::vector<Robot> robots;
+  };
   void run();
-  void drain_records(Robot& robot, Time now, std::int64_t unix_ns);
+  void drain_records(const Loop& loop, Robot& robot, Time now, std::int64_t unix_ns);
   void drain_receipts(Robot& robot);
   void drain_reader_events();
-  void look_at_counters(Robot& robot, Time now);
+  void look_at_counters(Time now);
   void print();
 
   Topics& topics_;
-  std::vector<std::unique_ptr<Robot>> robots_;
+  std::vector<Loop> loops_;
+  Time next_look_{};  // at the counters
   SpscQueue<ReaderEvent>& reader_events_;
   Wakeup& wakeup_;
   Log log_;

@@ -28,19 +28,11 @@ std::string error_sentence(std::uint16_t code) {
 }  // namespace
 
 void RobotLog::say(Event event, Level level, std::string text, Time now, std::vector<LogLine>& lines) {
-  Quiet& quiet = quiet_[event];
-  if (quiet.said && now < quiet.until) {
-    ++quiet.kept_back;
-    return;
-  }
-  text = robot_ + ": " + text;
-  if (quiet.kept_back > 0) text += " (" + std::to_string(quiet.kept_back) + " more of this kind since the last line)";
-  quiet = {true, now + kQuiet, 0};
-  lines.push_back({level, std::move(text)});
+  events_[event].say(level, robot_ + ": " + std::move(text), now, lines);
 }
 
 void RobotLog::look(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
-  look_at_link(record, now, lines);
+  if (!record.closing) look_at_link(record, now, lines);  // that the bridge stops is no news of a robot
   look_at_owner(record.control, now, lines);
   look_at_trouble(record, now, lines);
 }
@@ -49,7 +41,7 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
   const bool up = record.link == LinkState::kUp;
   const bool changed = up != link_up_ || first_;
   // What was kept back is said when the quiet time is over and it is still so: the last line is the truth.
-  if (changed || (up != said_up_ && now >= quiet_[up ? kLinkUp : kLinkDown].until)) {
+  if (changed || (up != said_up_ && !events_[up ? kLinkUp : kLinkDown].is_quiet(now))) {
     const std::string detail = record.link_detail.empty() ? "" : ": " + std::string(record.link_detail.view());
     const std::size_t before = lines.size();
     if (up) {
@@ -57,14 +49,14 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
     } else {
       say(kLinkDown, first_ ? Level::kInfo : Level::kWarning, (first_ ? "no link yet" : "link down") + detail, now,
           lines);
-      if (first_) quiet_[kLinkDown] = {};  // the first "link down" is news
+      if (first_) events_[kLinkDown] = {};  // the first "link down" is news
     }
     if (lines.size() > before) {
       said_up_ = up;
       said_detail_ = record.link_detail;
     }
   } else if (record.link == LinkState::kDown && !said_up_ && !record.link_detail.empty() &&
-             record.link_detail != said_detail_ && now >= quiet_[kLinkTrouble].until) {
+             record.link_detail != said_detail_ && !events_[kLinkTrouble].is_quiet(now)) {
     say(kLinkTrouble, Level::kWarning, "no link: " + std::string(record.link_detail.view()), now, lines);
     said_detail_ = record.link_detail;
   }
@@ -147,7 +139,6 @@ void RobotLog::look(const LogFacts& facts, Time now, std::vector<LogLine>& lines
         std::string(what) + ": " + std::to_string(news) + ", " + std::to_string(facts.*counter) + " since the start",
         now, lines);
   };
-  compare(kMissed, &LogFacts::missed_cycles, Level::kWarning, "missed cycles (the machine woke the loop too late)");
   compare(kDropped, &LogFacts::records_dropped, Level::kWarning,
           "dropped state records (the publisher came too late for them)");
   compare(kLost, &LogFacts::receipts_lost, Level::kError, "lost receipts");

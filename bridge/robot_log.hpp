@@ -1,5 +1,5 @@
-// What is worth a line in the log about one robot: the first time a sentence, afterwards a number. A machine without
-// output: records come in, lines go out; the publisher thread prints them.
+// What is worth a line in the log about one robot. A machine without output: records come in, lines go out; the
+// publisher thread prints them.
 #pragma once
 
 #include <array>
@@ -8,24 +8,17 @@
 #include <vector>
 
 #include "bridge/cycle.hpp"
+#include "bridge/log_line.hpp"
 
 namespace meca::bridge {
 
-struct LogLine {
-  enum class Level : std::uint8_t { kInfo, kWarning, kError } level = Level::kInfo;
-  std::string text;
-};
-
-// Counters of the robot's threads, as of now.
+// Counters of what is between the robot's loop and DDS, as of now.
 struct LogFacts {
-  std::uint64_t missed_cycles = 0, records_dropped = 0, receipts_lost = 0, refused_writes = 0;
+  std::uint64_t records_dropped = 0, receipts_lost = 0, refused_writes = 0;
 };
 
 class RobotLog {
  public:
-  // The same event again within this time is only counted, and told with the next line.
-  static constexpr Time kQuiet = std::chrono::seconds(10);
-
   explicit RobotLog(std::string robot) : robot_(std::move(robot)) {}
 
   // The lines that this record is worth, in `lines` (appended). `now` is any monotonic time.
@@ -48,16 +41,10 @@ class RobotLog {
     kErrorGone,
     kSafetyStop,
     kSafetyGone,
-    kMissed,
     kDropped,
     kLost,
     kRefused,
     kEvents
-  };
-  struct Quiet {
-    bool said = false;
-    Time until{};
-    std::uint64_t kept_back = 0;
   };
   void say(Event event, LogLine::Level level, std::string text, Time now, std::vector<LogLine>& lines);
   void look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
@@ -66,7 +53,7 @@ class RobotLog {
   void look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
 
   std::string robot_;
-  std::array<Quiet, kEvents> quiet_;
+  std::array<LogEvent, kEvents> events_;
   bool link_up_ = false, said_up_ = false;
   transports::LinkDetail said_detail_;
   bool first_ = true;

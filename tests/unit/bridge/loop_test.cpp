@@ -202,6 +202,7 @@ TEST_F(BusGroupTest, TheLastRecordSaysThatNobodyIsConnected) {
   EXPECT_EQ(last.quality, Quality::kDisconnected);
   EXPECT_EQ(last.link, transports::LinkState::kDown);
   EXPECT_EQ(last.link_detail.view(), "the bridge has stopped");
+  EXPECT_TRUE(last.closing);
   EXPECT_FALSE(last.control.owned);
   EXPECT_EQ(last.cycle, cycle_before + 1);
 }

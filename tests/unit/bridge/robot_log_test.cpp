@@ -96,6 +96,21 @@ TEST(RobotLog, WhatHappensOnTheWayUpIsNoReasonWhyThereIsNoLink) {
   EXPECT_THAT(said(log, record, 2s), ElementsAre("arm1: no link: refuses SAFEOP: invalid output mapping"));
 }
 
+TEST(RobotLog, ThatTheBridgeStopsIsSaidOfNoRobotButWhoHadControlLostIt) {
+  RobotLog log("arm1");
+  CycleRecord record = good();
+  record.control.owned = true;
+  record.control.owner = "cell-plc";
+  said(log, record, 0s);
+  record.link = LinkState::kDown;
+  record.link_detail = "the bridge has stopped";
+  record.closing = true;
+  record.control.owned = false;
+  record.control.owner = {};
+  record.control.last_loss = control::ControlState::Loss::kShutdown;
+  EXPECT_THAT(said(log, record, 60s), ElementsAre("arm1: cell-plc lost control: the bridge is stopping"));
+}
+
 TEST(RobotLog, FirmwareIsNamedOnceAndAMismatchIsAnError) {
   RobotLog log("arm1");
   auto record = good();
@@ -175,12 +190,12 @@ TEST(RobotLog, WithoutASafetySectionNothingIsSaidAboutStops) {
 TEST(RobotLog, CountersThatRiseAreToldWithTheirTotal) {
   RobotLog log("arm1");
   EXPECT_THAT(said(log, LogFacts{}, 0s), IsEmpty());
-  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 3}, 1s),
-              ElementsAre("arm1: missed cycles (the machine woke the loop too late): 3, 3 since the start"));
-  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 3}, 30s), IsEmpty());
-  EXPECT_THAT(said(log, LogFacts{.missed_cycles = 5, .receipts_lost = 1}, 60s),
-              ElementsAre("arm1: missed cycles (the machine woke the loop too late): 2, 5 since the start",
-                          "arm1: lost receipts: 1, 1 since the start"));
+  EXPECT_THAT(said(log, LogFacts{.refused_writes = 3}, 1s),
+              ElementsAre("arm1: samples refused by DDS: 3, 3 since the start"));
+  EXPECT_THAT(said(log, LogFacts{.refused_writes = 3}, 30s), IsEmpty());
+  EXPECT_THAT(
+      said(log, LogFacts{.receipts_lost = 1, .refused_writes = 5}, 60s),
+      ElementsAre("arm1: lost receipts: 1, 1 since the start", "arm1: samples refused by DDS: 2, 5 since the start"));
 }
 
 }  // namespace
