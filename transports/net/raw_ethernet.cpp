@@ -44,7 +44,7 @@ std::string no_right(const std::string& interface) {
   return "raw frames on '" + interface +
          "' need the right CAP_NET_RAW; run as root, or give it to the program once: sudo setcap "
          "cap_net_raw,cap_sys_nice,cap_ipc_lock+ep " +
-         program + ", or to its container: docker run --cap-add NET_RAW";
+         program + ", or to its container: docker run --user root --cap-add NET_RAW";
 }
 
 // What can be asked without rights, so that these mistakes are told first.

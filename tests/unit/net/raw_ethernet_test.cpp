@@ -94,7 +94,7 @@ TEST(RawEthernet, SaysWhichRightIsMissingAndHowToGiveIt) {
   ASSERT_EQ(::seteuid(0), 0);
   EXPECT_THAT(said, AllOf(HasSubstr("raw frames on 'eth1' need the right CAP_NET_RAW; run as root"),
                           HasSubstr("sudo setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep /"), HasSubstr("test_net"),
-                          HasSubstr("docker run --cap-add NET_RAW")));
+                          HasSubstr("docker run --user root --cap-add NET_RAW")));
 }
 
 TEST(RawEthernet, RefusesAnInterfaceOfShortFrames) {
