@@ -1,5 +1,5 @@
 // One step of the AL state machine: acknowledges an error that stands, asks for a state, waits until it is reached
-// (ETG.1000.6, 6.4; spec/ethercat.md 5.5).
+// (ETG.1000.6, 6.4; spec 5.5).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Distributed clocks of the chain (spec/ethercat.md 5.9; ETG.1000.4, clause 6 "distributed clock"): propagation delays
+// Distributed clocks of the chain (spec 5.9; ETG.1000.4, clause 6 "distributed clock"): propagation delays
 // from the times at which a frame passes the ports, offsets to the master's time, and the drift towards the reference,
 // which is the first device that has a clock. A machine without I/O that wants datagrams and takes answers; no
 // allocation after construction. Clocks that run already are not set again: only their delays are, when the chain

@@ -1,5 +1,5 @@
 // What is read and written through the mailbox in PREOP: name and firmware (1008h, 100Ah), the PDO assignment, which is
-// always written and then read back down to the bits, and the sync type (spec/ethercat.md 5.8).
+// always written and then read back down to the bits, and the sync type (spec 5.8).
 #pragma once
 
 #include <array>

@@ -75,7 +75,7 @@ void serve_process_data(DeviceState& s, Time now) noexcept;
 // Whether two FMMUs write the outputs, or read the inputs: then the working counter and the data are anyone's guess.
 bool maps_twice(const Esc& esc) noexcept;
 
-namespace al {  // ETG.1020; spec/ethercat.md 5.5
+namespace al {  // ETG.1020; spec 5.5
 inline constexpr std::uint16_t kInvalidChange = 0x0011, kUnknownState = 0x0012, kNoBoot = 0x0013,
                                kMailboxConfiguration = 0x0016, kSyncManagerConfiguration = 0x0017, kSyncError = 0x001A,
                                kWatchdog = 0x001B, kOutputConfiguration = 0x001D, kInputConfiguration = 0x001E,

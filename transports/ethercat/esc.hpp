@@ -1,6 +1,6 @@
 // An EtherCAT slave controller (ESC) of a simulated robot, as a machine without I/O: registers, FMMUs, sync managers,
 // SII, watchdog and clock as a master sees them through datagrams, and the other side (PDI) as the robot's application
-// (device.hpp) sees them. ETG.1000.4; spec/ethercat.md 5.3 and 6. No clock; allocates only in the constructor.
+// (device.hpp) sees them. ETG.1000.4; spec 5.3 and 6. No clock; allocates only in the constructor.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Registers 0000 to 0FFF: what ECAT may write, and what reading and writing does (ESC data sheet section II;
-// spec/ethercat.md 5.3, 6.1). Every address of this area answers, also where there is no register: masters write over
+// spec 5.3, 6.1). Every address of this area answers, also where there is no register: masters write over
 // the ends of FMMUs and sync managers that do not exist, and expect a working counter.
 #include "transports/ethercat/esc_state.hpp"
 

@@ -1,4 +1,4 @@
-// EtherCAT frames: Ethernet header, frame header, datagrams (ETG.1000.4, 5.2 to 5.4; spec/ethercat.md 5.1). Everything
+// EtherCAT frames: Ethernet header, frame header, datagrams (ETG.1000.4, 5.2 to 5.4; spec 5.1). Everything
 // is little endian.
 #pragma once
 

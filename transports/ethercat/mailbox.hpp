@@ -1,5 +1,5 @@
 // Mailbox and CANopen over EtherCAT (CoE): headers, SDO and SDO information services, emergencies (ETG.1000.6, 5.6;
-// spec/ethercat.md 5.8). Bytes <-> structs only; who waits for what is in sdo_client.hpp and coe_server.hpp.
+// spec 5.8). Bytes <-> structs only; who waits for what is in sdo_client.hpp and coe_server.hpp.
 #pragma once
 
 #include <array>

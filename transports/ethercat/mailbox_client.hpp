@@ -1,5 +1,5 @@
 // Our end of a device's mailbox: one CoE request at a time and the mails that answer it (ETG.1000.4, 11;
-// spec/ethercat.md 5.8). A mail that is lost on its way to the device is written again with the same counter, so that
+// spec 5.8). A mail that is lost on its way to the device is written again with the same counter, so that
 // the device drops it if it has it; a mail that is lost on its way to us is asked for again.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Registers of an EtherCAT slave controller (ESC) and what is written there (ETG.1000.4, 6; ESC data sheet section II;
-// spec/ethercat.md 5.3, 5.5, 5.6). Both ends use these names.
+// spec 5.3, 5.5, 5.6). Both ends use these names.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ inline constexpr std::uint16_t kAlAcknowledge = 0x0010;  // AL control: acknowle
 inline constexpr std::uint16_t kFeatureDc = 0x0004, kFeatureDc64 = 0x0008, kFeatureEnhancedDc = 0x0100,
                                kFeatureNoLrw = 0x0200;
 
-// How a Meca500 lays out its memory (vendor's ESI; spec/ethercat.md 5.6). Start, length and control byte of each sync
+// How a Meca500 lays out its memory (vendor's ESI; spec 5.6). Start, length and control byte of each sync
 // manager; 0 mailbox to the device, 1 mailbox from the device, 2 outputs, 3 inputs.
 struct SyncManagerLayout {
   std::uint16_t start, length;

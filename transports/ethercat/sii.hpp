@@ -1,5 +1,5 @@
 // The slave information (SII, the "EEPROM"): words that say who a device is and how its mailbox lies (ETG.1000.6, 5.4;
-// ETG.2010; spec/ethercat.md 5.4).
+// ETG.2010; spec 5.4).
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 namespace meca::ethercat {
 namespace {
 
-// Register 0502 (ETG.1000.4, 6.4; spec/ethercat.md 5.4).
+// Register 0502 (ETG.1000.4, 6.4; spec 5.4).
 constexpr std::uint16_t kReadCommand = 0x0100, kEightBytes = 0x0040, kCommandError = 0x2000, kBusy = 0x8000;
 
 }  // namespace

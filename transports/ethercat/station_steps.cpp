@@ -156,7 +156,7 @@ void StationState::write_mailbox_registers(Time now) noexcept {
   run(writes);
 }
 
-// SYNC0 at multiples of the cycle of the system time, which is the same in all devices (spec/ethercat.md 5.9.7).
+// SYNC0 at multiples of the cycle of the system time, which is the same in all devices (spec 5.9.7).
 void StationState::write_clock_registers(Time now) noexcept {
   const auto cycle = static_cast<std::uint64_t>(std::max<Time::rep>(settings.sync0_cycle.count(), 1));
   const std::uint64_t earliest = *clock + static_cast<std::uint64_t>((now - clock_at + kSync0Lead).count());

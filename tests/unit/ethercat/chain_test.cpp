@@ -1,5 +1,5 @@
 // Devices in a row: which of them a frame passes, where it comes out, and what devices see of their cables
-// (ETG.1000.4, 4; spec/ethercat.md 5.2, 5.9, 6.1).
+// (ETG.1000.4, 4; spec 5.2, 5.9, 6.1).
 #include <memory>
 
 #include "tests/unit/ethercat/esc_wire.hpp"

@@ -1,4 +1,4 @@
-// Distributed clocks of the ESC (ETG.1000.4, 6.8; spec/ethercat.md 5.9).
+// Distributed clocks of the ESC (ETG.1000.4, 6.8; spec 5.9).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

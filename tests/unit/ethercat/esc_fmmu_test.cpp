@@ -1,4 +1,4 @@
-// Logical addressing of the ESC: FMMUs by bytes and by bits (ETG.1000.4, 6.6; spec/ethercat.md 5.6, 6.1).
+// Logical addressing of the ESC: FMMUs by bytes and by bits (ETG.1000.4, 6.6; spec 5.6, 6.1).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

@@ -1,4 +1,4 @@
-// Commands, addresses, working counters and registers of the ESC (ETG.1000.4, 5.4 and 6; spec/ethercat.md 5.2, 5.3).
+// Commands, addresses, working counters and registers of the ESC (ETG.1000.4, 5.4 and 6; spec 5.2, 5.3).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

@@ -1,4 +1,4 @@
-// The SII in all shapes in which masters reach for it (ETG.1000.4, 6.4; spec/ethercat.md 5.4, 6.1).
+// The SII in all shapes in which masters reach for it (ETG.1000.4, 6.4; spec 5.4, 6.1).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

@@ -1,4 +1,4 @@
-// Sync managers of the ESC: mailboxes and process data (ETG.1000.4, 6.7; spec/ethercat.md 5.6, 6.1).
+// Sync managers of the ESC: mailboxes and process data (ETG.1000.4, 6.7; spec 5.6, 6.1).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

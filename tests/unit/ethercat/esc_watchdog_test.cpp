@@ -1,4 +1,4 @@
-// The process data watchdog of the ESC (spec/ethercat.md 5.3, 6.1).
+// The process data watchdog of the ESC (spec 5.3, 6.1).
 #include "tests/unit/ethercat/esc_wire.hpp"
 
 namespace meca::ethercat {

@@ -28,7 +28,7 @@ TEST(StationClimb, GoesThroughTheStatesOneByOne) {
   EXPECT_THAT(rig.device.al_requests, ElementsAre(0x11, 0x02, 0x04, 0x08));
 }
 
-// The bytes that five public masters write (spec/ethercat.md 5.6).
+// The bytes that five public masters write (spec 5.6).
 TEST(StationClimb, WritesSyncManagersAndFmmusAsEveryMasterDoes) {
   StationRig rig;
   ASSERT_TRUE(rig.climbs());

@@ -105,7 +105,7 @@ std::map<std::uint16_t, std::vector<std::byte>> categories(Bytes image) {
   return out;
 }
 
-// As `ethercat pdos` and `ethercat sii_read` show a real one (spec/ethercat.md 5.4): no strings, no PDOs, and lengths
+// As `ethercat pdos` and `ethercat sii_read` show a real one (spec 5.4): no strings, no PDOs, and lengths
 // of sync managers 2 and 3 that nobody may trust.
 TEST(SiiOfTheRobot, HasTheCategoriesOfARealOneWithItsWrongLengths) {
   const auto found = categories(make_meca500_sii(0, 0));
