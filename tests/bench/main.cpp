@@ -36,11 +36,15 @@ int main(int argc, char** argv) try {
 
   CLI::App app{
       "Measures the bridge beside raw Fast DDS and bare system calls, in one run; proves promises (deaths, fight,\n"
-      "throughput), then the exit code is 1 for a broken one and 3 when the machine was too busy to tell.\n"
+      "throughput, ethercat-throughput), then the exit code is 1 for a broken one and 3 when the machine was too busy\n"
+      "to tell or does not permit what it takes. ethercat-*: on a virtual cable in a network of its own, as root "
+      "(then\n"
+      "with real-time priority on both sides) or in a user namespace.\n"
       "Read the ratios: absolute figures belong to this machine and this moment."};
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--seconds", seconds, "Length of each measurement; of a fight, two minutes unless given")
+  app.add_option("--seconds", seconds,
+                 "Length of each measurement; unless given, two minutes of a fight and one of ethercat-period")
       ->check(CLI::Range(3, 600))
       ->capture_default_str();
   app.add_option("--domain", setting.domain, "DDS domain")->capture_default_str();
