@@ -47,15 +47,19 @@ BusGroup::BusGroup(std::vector<LoopBus> buses) {
   }
 }
 
-void BusGroup::run(Stamp stamp, Ending ending) noexcept {
+bool BusGroup::run(Stamp stamp, Ending ending) noexcept {
+  bool news = false;
   for (auto& bus : buses_) {
     bus.transport->exchange(stamp.now, bus.exchanges);
     for (std::size_t i = 0; i < bus.robots.size(); ++i) {
       Robot& robot = bus.robots[i];
       const bool had_its_step = std::exchange(robot.stepped, false) && !bus.exchanges[i].fresh && ending == robot.told;
-      if (!had_its_step) step(robot, bus.exchanges[i], stamp, ending);
+      if (had_its_step) continue;
+      step(robot, bus.exchanges[i], stamp, ending);
+      news = true;
     }
   }
+  return news;
 }
 
 transports::Transport::Woke BusGroup::wait(Time deadline) noexcept {
@@ -194,8 +198,8 @@ void Loop::run(std::promise<std::vector<std::string>> ready) {
     wait_for(pacer.deadline());
     pacer.woke(monotonic());
     if (stop_requested_.load()) ending = ++stopping < patience ? Ending::kStop : Ending::kGiveUp;
-    group_.run(stamp(), ending);
-    wakeup_.notify();
+    // Not without need: a frame may be on its way back, and its step notifies again.
+    if (group_.run(stamp(), ending)) wakeup_.notify();
     pacer.done(monotonic());
     pacer.shift(group_.deadline_shift());
     share_pace(pacer.facts());

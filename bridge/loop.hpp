@@ -37,7 +37,8 @@ class BusGroup {
 
   enum class Ending : std::uint8_t { kNone, kStop, kGiveUp };
   // Exchanges every bus, steps every robot. kStop: every Cycle is told to stop its robot; kGiveUp: to wait for nothing.
-  void run(Stamp stamp, Ending ending) noexcept;
+  // False when every robot has had its step already: there is nothing new to publish.
+  bool run(Stamp stamp, Ending ending) noexcept;
   // Between two rounds: a bus of its own may wait by itself (see Transport::wait).
   transports::Transport::Woke wait(Time deadline) noexcept;
   // Something arrived before the next round: steps the robots that it concerns, in place of that round's step.
@@ -73,7 +74,7 @@ class BusGroup {
 
 class Loop {
  public:
-  // `wakeup` is notified after every round; it outlives the loop.
+  // `wakeup` is notified when there is something to publish; it outlives the loop.
   Loop(std::vector<LoopBus> buses, Time cycle, const RealtimeConfig& realtime, Wakeup& wakeup);
   ~Loop();  // stops
   Loop(const Loop&) = delete;

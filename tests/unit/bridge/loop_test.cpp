@@ -109,6 +109,19 @@ TEST_F(BusGroupTest, AnImageThatArrivesBetweenTwoRoundsHasItsStepAtOnceInPlaceOf
   EXPECT_EQ(arm1_.records.size(), 2U);
 }
 
+TEST_F(BusGroupTest, ARoundHasNewsUnlessEveryRobotHadItsStepBetween) {
+  auto group = this->group({&arm1_, &arm2_});
+  EXPECT_TRUE(group.run(next(), BusGroup::Ending::kNone));
+  seen_.fresh = {true, false};
+  group.run_arrived(next());
+  seen_.fresh = {false, false};
+  EXPECT_TRUE(group.run(next(), BusGroup::Ending::kNone));  // of the second robot
+  seen_.fresh = {true, true};
+  group.run_arrived(next());
+  seen_.fresh = {false, false};
+  EXPECT_FALSE(group.run(next(), BusGroup::Ending::kNone));
+}
+
 TEST_F(BusGroupTest, ARobotThatHadItsStepStillHearsThatItIsToStop) {
   auto group = this->group({&arm1_});
   for (int i = 0; i < 5; ++i) group.run(next(), BusGroup::Ending::kNone);
