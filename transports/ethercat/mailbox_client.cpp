@@ -37,7 +37,7 @@ const char* error_text(std::uint16_t error) noexcept {
 
 void MailboxClient::drain(Time now) noexcept {
   begin();
-  draining_ = true;
+  draining_ = written_ = true;
   heard_ = maybe_taken_ = reply_lost_ = false;
   deadline_ = now + timeouts_.response;
   go(Step::kStatus, now);
@@ -45,7 +45,7 @@ void MailboxClient::drain(Time now) noexcept {
 
 void MailboxClient::request(Bytes sdo, Time now) noexcept {
   begin();
-  draining_ = heard_ = maybe_taken_ = reply_lost_ = false;
+  draining_ = heard_ = written_ = maybe_written_ = maybe_taken_ = reply_lost_ = false;
   counter_ = next_mailbox_counter(counter_);
   out_ = {};
   wire::Writer out(out_);
@@ -69,7 +69,7 @@ void MailboxClient::tick(Time now) noexcept {
   if (!running() || now < deadline_) return;
   if (!heard_) return fail(Predicate("does not answer; check its power and the cables to it"));
   if (draining_) return fail(Predicate("has ever more mails in its mailbox; restart it"));
-  fail(step_ == Step::kWrite
+  fail(!written_
            ? Predicate::format("does not take a mail out of its mailbox within %lld ms; restart it",
                                milliseconds(timeouts_.request))
            : Predicate::format("does not answer an SDO within %lld ms; restart it", milliseconds(timeouts_.response)));
@@ -116,11 +116,12 @@ void MailboxClient::answered(std::uint16_t working_counter, Bytes data, Time now
   }
 }
 
-// Nobody counts a write into a mailbox that is full.
+// Nobody counts a write into a mailbox that is full. A device may leave it full until its last answer is read: that of
+// a writing that was lost on its way back to us, perhaps.
 void MailboxClient::wrote(std::uint16_t working_counter, Time now) noexcept {
   heard_ = true;
-  if (working_counter == 0) return go(Step::kWrite, now + kPollPeriod);
-  deadline_ = now + timeouts_.response;
+  written_ = working_counter != 0;
+  if (written_) deadline_ = now + timeouts_.response;
   go(Step::kStatus, now);
 }
 
@@ -132,7 +133,7 @@ void MailboxClient::status_read(std::uint8_t status, Time now) noexcept {
     repeat_deadline_ = now + timeouts_.request;
     return go(Step::kFindRepeat, now);
   }
-  go(Step::kStatus, now + kPollPeriod);
+  go(written_ ? Step::kStatus : Step::kWrite, now + kPollPeriod);
 }
 
 // A repeat is requested by making the request bit differ from the acknowledge, and is there when they agree again.
@@ -164,7 +165,7 @@ void MailboxClient::mail_read(Bytes memory, Time now) noexcept {
     return;
   }
   if (mail->header.type != static_cast<std::uint8_t>(MailboxType::kCoe)) return;
-  if (coe_received(mail->payload) && !draining_) done();
+  if (coe_received(mail->payload) && !draining_ && (written_ || maybe_written_)) done();
 }
 
 // True for a mail of the SDO services. Emergencies come whenever they want.
@@ -187,6 +188,7 @@ bool MailboxClient::coe_received(Bytes payload) noexcept {
 
 void MailboxClient::lost(Time now) noexcept {
   ++counters_.lost_accesses;
+  if (step_ == Step::kWrite) maybe_written_ = true;
   if (step_ == Step::kRead) maybe_taken_ = true;
   go(step_ == Step::kRead ? Step::kStatus : step_, now);
 }

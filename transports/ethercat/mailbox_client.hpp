@@ -45,7 +45,7 @@ class MailboxClient final : public AccessMachine {
 
  private:
   enum class Step : std::uint8_t {
-    kWrite,       // into sync manager 0
+    kWrite,       // into sync manager 0; by turns with kStatus while that is full
     kStatus,      // is there a mail in sync manager 1?
     kRead,        // out of it
     kFindRepeat,  // a mail may have been lost: how do request and acknowledge of a repeat stand?
@@ -66,7 +66,9 @@ class MailboxClient final : public AccessMachine {
   StationCounters& counters_;
   Step step_ = Step::kStatus;
   bool draining_ = false, heard_ = false;
-  bool maybe_taken_ = false;  // a reading of sync manager 1 was lost
+  bool written_ = false;        // the mail lies in sync manager 0, or did
+  bool maybe_written_ = false;  // a writing of it was lost
+  bool maybe_taken_ = false;    // a reading of sync manager 1 was lost
   bool reply_lost_ = false;
   std::uint8_t counter_ = 0;
   std::array<std::byte, kMailboxSize> out_{}, in_{};

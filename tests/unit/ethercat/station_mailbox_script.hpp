@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/ethercat/wire_golden.hpp"
@@ -28,7 +29,8 @@ class MailboxScript {
   std::deque<std::vector<ByteVector>> answers;  // to the first mail, to the second, ..
   std::vector<ByteVector> written;              // mails, without what fills them up
   std::deque<ByteVector> outbox;
-  std::size_t full_for = 0;  // so many writes meet a full mailbox
+  std::size_t full_for = 0;    // so many writes meet a full mailbox
+  bool one_at_a_time = false;  // takes no mail out of its mailbox before its last answer was read
   std::uint8_t activate = 1, pdi = 0;
   bool repeats = true;
   ByteVector last;
@@ -59,6 +61,7 @@ class MailboxScript {
       --full_for;
       return 0;
     }
+    if (one_at_a_time && !outbox.empty()) return std::exchange(full_, true) ? 0 : 1;
     const std::size_t length = 6 + std::to_integer<std::size_t>(memory[0]);
     written.emplace_back(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(length));
     if (answers.empty()) return 1;
@@ -70,6 +73,7 @@ class MailboxScript {
     if (outbox.empty()) return {0, ByteVector(kMailboxSize)};
     last = outbox.front();
     outbox.pop_front();
+    full_ = false;  // what lay there is a mail that it has had, by its counter
     return {1, last};
   }
   void request_repeat(std::uint8_t value) {
@@ -79,6 +83,7 @@ class MailboxScript {
     }
     activate = value;
   }
+  bool full_ = false;
 };
 
 enum class Loss : std::uint8_t { kNothing, kRequest, kReply };

@@ -87,14 +87,45 @@ TEST(StationMailbox, TriesAgainWhileTheOtherEndIsFull) {
   EXPECT_EQ(rig.counters.lost_accesses, 0u);  // a full mailbox is no loss
 }
 
+// Once it wrote on and on, and the device waited for its answer to be read.
+TEST(StationMailbox, ReadsTheAnswerToAMailThatItCouldNotKnowToBeThere) {
+  for (const int lost : {1, 2, 3}) {
+    MailboxRig rig;
+    rig.device.one_at_a_time = true;
+    rig.device.answers = {{in_mailbox(kReply)}};
+    rig.request();
+    const auto outcome = rig.run([n = lost](const Access& access) mutable {
+      return access.address == 0x1000 && n-- > 0 ? Loss::kReply : Loss::kNothing;
+    });
+    EXPECT_EQ(outcome, Outcome::kDone) << lost << ": " << rig.trouble();
+    EXPECT_EQ(rig.device.written.size(), 1u) << lost;
+  }
+}
+
+TEST(StationMailbox, DoesNotTakeAnOldAnswerForItsOwnWhileItsMailIsNotEvenWritten) {
+  MailboxRig rig;
+  rig.device.full_for = 3;
+  rig.device.outbox.push_back(in_mailbox("0A 00 00 00 00 13 00 30 43 18 10 01 11 11 11 11"));
+  rig.device.answers = {{in_mailbox(kReply)}};
+  rig.request();
+  ASSERT_EQ(rig.run(), Outcome::kDone);
+  EXPECT_EQ(ByteVector(rig.client.sdo().begin(), rig.client.sdo().end()), from_hex("43 18 10 01 E1 AD EC 00"));
+}
+
 TEST(StationMailbox, LeavesAFullOneTimeToEmpty) {
   MailboxRig rig;
   rig.request();
   ASSERT_TRUE(rig.client.next(rig.now));
   rig.client.answered(0, {}, rig.now);
+  const auto status = rig.client.next(rig.now);  // an answer that lies there may be what it waits for
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->address, 0x080D);
+  rig.client.answered(1, ByteVector{std::byte{0}}, rig.now);
   EXPECT_FALSE(rig.client.next(rig.now));
   EXPECT_EQ(rig.client.next_event(), rig.now + kPollPeriod);
-  EXPECT_TRUE(rig.client.next(rig.now + kPollPeriod));
+  const auto again = rig.client.next(rig.now + kPollPeriod);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->address, 0x1000);
 }
 
 TEST(StationMailbox, WritesALostMailAgainWithTheSameCounter) {
