@@ -160,6 +160,25 @@ TEST_F(EthercatTransport, MeasuresRoundTripsAndWakeUps) {
   EXPECT_EQ(bus.counter("malformed_frames"), 0);
 }
 
+TEST_F(EthercatTransport, IsTheOnlyMasterOnItsInterfaces) {
+  BusOptions other = usual_segment();
+  other.interface = "robot2";
+  other.redundant_interface = "eth1";
+  {
+    const Segment bus(first(1));
+    for (const BusOptions& options : {usual_segment(), other}) {
+      try {
+        const Segment second(first(1), options);
+        FAIL() << "no error";
+      } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(),
+                     "'eth1' has an EtherCAT master already: another meca-bridge runs on it; stop that one first");
+      }
+    }
+  }
+  EXPECT_NO_THROW(Segment(first(1), other));
+}
+
 TEST_F(EthercatTransport, DoesNotOpenAnInterfaceThatIsNotThere) {
   BusOptions options = usual_segment();
   options.redundant_interface = "eth7";

@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "transports/ethercat/bus_counters.hpp"
+#include "transports/net/claim.hpp"
 #include "transports/net/clock.hpp"
 #include "transports/net/poller.hpp"
 #include "transports/net/raw_ethernet.hpp"
@@ -86,6 +88,7 @@ class Bus final : public transports::Transport {
  private:
   struct Interface {
     net::RawEthernet socket;
+    net::File claim;           // that no other bridge is master on it
     std::optional<Link> link;  // as it was looked at last
   };
   struct Robot {
@@ -93,6 +96,7 @@ class Bus final : public transports::Transport {
     Time stepped_for{};  // the deadline before which an arrival was last announced: one step a cycle
   };
 
+  static Interface open_interface(const std::string& name);
   void begin_cycle(Time now) noexcept;
   void send(Time now) noexcept;
   void serve(Time until) noexcept;
@@ -114,10 +118,23 @@ class Bus final : public transports::Transport {
   std::array<std::byte, kLongestFrame> buffer_{};
 };
 
+// Two masters would take each other's replies for their own and bring the robots down by turns.
+Bus::Interface Bus::open_interface(const std::string& name) {
+  Interface out;
+  out.socket = net::RawEthernet(name, kEtherType);
+  auto claim = net::claim("meca500/ethercat-master/" + name);
+  if (!claim) {
+    throw std::runtime_error("'" + name +
+                             "' has an EtherCAT master already: another meca-bridge runs on it; stop that one first");
+  }
+  out.claim = std::move(*claim);
+  return out;
+}
+
 void Bus::open(Time now) {
   const bool redundant = !options_.redundant_interface.empty();
-  ports_[0].socket = net::RawEthernet(options_.interface, kEtherType);
-  if (redundant) ports_[1].socket = net::RawEthernet(options_.redundant_interface, kEtherType);
+  ports_[0] = open_interface(options_.interface);
+  if (redundant) ports_[1] = open_interface(options_.redundant_interface);
   for (std::size_t port = 0; port < kPorts; ++port) poller_.watch(port, ports_[port].socket.descriptor());
   MasterSettings settings;
   settings.robots = places_;
