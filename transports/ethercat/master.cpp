@@ -17,6 +17,7 @@ constexpr unsigned kMissesToSay = 10, kUnequalPauses = 4;
 StationSettings station_settings(const MasterSettings& settings, std::size_t robot) {
   StationSettings out = settings.station;
   out.position = settings.robots[robot].position;
+  out.alias = settings.robots[robot].alias;
   out.logical_output = static_cast<std::uint32_t>(robot * kLogicalSize);
   out.logical_input = out.logical_output + kOutputSize;
   out.watchdog = settings.watchdog;

@@ -25,7 +25,8 @@
 namespace meca::ethercat {
 
 struct StationSettings {
-  std::uint16_t position = 0;                           // in the chain, for the sentences
+  std::uint16_t position = 0;                           // in the chain, for the sentences ..
+  std::optional<std::uint16_t> alias;                   // .. or what it is known by, wherever it stands
   std::uint32_t logical_output = 0, logical_input = 0;  // where its process data stands in the logical address space
   Time watchdog = std::chrono::milliseconds(100);       // of sync manager 2, 0: as the device has it; 100 us steps
   bool dc = false;                                      // DC synchronous mode, else SM-synchronous

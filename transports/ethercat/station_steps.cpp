@@ -192,8 +192,8 @@ void StationState::write_process_data_registers(Time now) noexcept {
 // ---- What goes wrong
 
 void StationState::say(const Predicate& what) noexcept {
-  trouble = Text::format("the robot at position %u %.*s", unsigned{settings.position}, length(what.view()),
-                         what.view().data());
+  trouble = Text::format("the robot %s %u %.*s", settings.alias ? "with alias" : "at position",
+                         unsigned{settings.alias.value_or(settings.position)}, length(what.view()), what.view().data());
 }
 
 void StationState::fail(const Predicate& why, Time now) noexcept {

@@ -135,6 +135,19 @@ TEST(MasterStart, AMissingAliasIsNamedAndADoubleOneToo) {
   EXPECT_THAT(segment.master().trouble(1), StartsWith("no robot with alias 5 is there: 2 devices answer; "));
 }
 
+// It was once "at position 0", wherever it stood.
+TEST(MasterStart, ARobotWithAnAliasIsCalledByItInEverySentence) {
+  std::vector<DeviceSettings> devices(2);
+  devices[1].alias = 5;
+  MasterSettings settings;
+  settings.robots = {{0, 5}};
+  Segment segment(settings, devices);
+  segment.device(1).faults().refuse_state = 0x0025;
+  segment.run(3s, [&] { return segment.master().station(0).phase() == Station::Phase::kPausing; });
+  EXPECT_THAT(segment.master().trouble(0),
+              StartsWith("the robot with alias 5 refuses SAFEOP: AL status code 0x0025, "));
+}
+
 TEST(MasterStart, ARobotThatIsNotThereIsSaidToBeBehindTheLastThatIs) {
   Segment segment(settings_for(3), std::vector<DeviceSettings>(2));
   segment.run(3s);
