@@ -60,6 +60,7 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
     say(kLinkTrouble, Level::kWarning, "no link: " + std::string(record.link_detail.view()), now, lines);
     said_detail_ = record.link_detail;
   }
+  look_at_reserve(record, now, lines);
   first_ = false;
   link_up_ = up;
   if (record.firmware_known && !firmware_known_) {
@@ -73,6 +74,16 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
         now, lines);
   }
   firmware_mismatch_ = record.firmware_mismatch;
+}
+
+// What is not as it should be though the link is up: half of a ring, inputs that do not come.
+void RobotLog::look_at_reserve(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
+  if (record.link != LinkState::kUp || !said_up_ || record.link_detail == said_detail_) return;
+  if (now < quiet_[kLinkTrouble].until) return;
+  if (!record.link_detail.empty()) {
+    say(kLinkTrouble, Level::kWarning, "link up, but: " + std::string(record.link_detail.view()), now, lines);
+  }
+  said_detail_ = record.link_detail;
 }
 
 void RobotLog::look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines) {

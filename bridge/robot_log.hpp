@@ -31,7 +31,7 @@ class RobotLog {
   enum Event {
     kLinkUp,
     kLinkDown,
-    kLinkTrouble,  // another reason why there is no link
+    kLinkTrouble,  // another reason why there is no link, or why it is not as it should be
     kFirmware,
     kMismatch,
     kOwnerCame,
@@ -48,6 +48,7 @@ class RobotLog {
   };
   void say(Event event, LogLine::Level level, std::string text, Time now, std::vector<LogLine>& lines);
   void look_at_link(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
+  void look_at_reserve(const CycleRecord& record, Time now, std::vector<LogLine>& lines);
   void look_at_owner(const control::ControlState& state, Time now, std::vector<LogLine>& lines);
   void say_who_went(const control::ControlState& state, Time now, std::vector<LogLine>& lines);
   void look_at_trouble(const CycleRecord& record, Time now, std::vector<LogLine>& lines);

@@ -47,6 +47,19 @@ TEST(RobotLog, ALinkThatIsNotAsItWasAskedForComesUpWithARemark) {
   EXPECT_THAT(said(log, up, 0s), ElementsAre("arm1: link up: another interval"));
 }
 
+TEST(RobotLog, ALinkThatIsUpButLacksSomethingIsToldOnceAndAgainWhenItIsAnotherThing) {
+  RobotLog log("arm1");
+  CycleRecord record = good();
+  said(log, record, 0s);
+  record.link_detail = "the ring is open";
+  EXPECT_THAT(said(log, record, 1s), ElementsAre("arm1: link up, but: the ring is open"));
+  EXPECT_THAT(said(log, record, 60s), IsEmpty());
+  record.link_detail = {};
+  EXPECT_THAT(said(log, record, 61s), IsEmpty());
+  record.link_detail = "the ring is open";
+  EXPECT_THAT(said(log, record, 62s), ElementsAre("arm1: link up, but: the ring is open"));
+}
+
 TEST(RobotLog, ALinkThatFlapsIsCountedAndNotRepeated) {
   RobotLog log("arm1");
   CycleRecord down;
