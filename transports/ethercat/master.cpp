@@ -60,10 +60,23 @@ void MasterState::give_up_overdue(Time now) noexcept {
       lost(*frame, now);
     in_flight.release(*frame);
   }
-  const Time silence = std::max(settings.watchdog, kLeastSilence);
-  if (any_port() && !silent && heard && now - *heard > silence) {
+  // In cycles, not in time: while we stood still ourselves nobody could answer.
+  const Time silence = settings.cycle * static_cast<Time::rep>(cycle - heard);
+  if (any_port() && !silent && silence > std::max(settings.watchdog, kLeastSilence)) {
     silent = true;
     out_of_reach("no device answers; check the cable to the first robot and its power", now);
+  }
+}
+
+void MasterState::ring_is(bool open, std::size_t reached_from_primary) noexcept {
+  ring_open = open;
+  if (!open) return;
+  constexpr const char* kMeaning = "the next cut takes robots away; check the cable there";
+  if (reached_from_primary == 0) {
+    ring_trouble = transports::LinkDetail::format("the ring is open before the first device; %s", kMeaning);
+  } else {
+    ring_trouble =
+        transports::LinkDetail::format("the ring is open behind position %zu; %s", reached_from_primary - 1, kMeaning);
   }
 }
 
@@ -113,7 +126,7 @@ Master& Master::operator=(Master&&) noexcept = default;
 
 void Master::begin_cycle(Time now) noexcept {
   state_->give_up_overdue(now);
-  state_->begin_cycle(now);
+  state_->begin_cycle();
 }
 
 Bytes Master::next_frame(Time now) noexcept {
@@ -146,9 +159,9 @@ void Master::received(Port port, Bytes frame, Time now) noexcept {
   if (state.settings.redundant && counts_all && port == Port::kPrimary && arrival.frame->awaited > 1) {
     // Of a whole ring the frame of the primary port comes back at the other one; what comes back here passed nobody.
     DatagramWalk<const std::byte> walk(frame);
-    const bool open = walk.next()->working_counter() > 0;
-    if (state.ring_open && !open) state.scan_wanted = true;  // who came new behind the break can be found now
-    state.ring_open = open;
+    const std::uint16_t reached = walk.next()->working_counter();
+    if (state.ring_open && reached == 0) state.scan_wanted = true;  // who came new behind the break can be found now
+    state.ring_is(reached > 0, reached);
   }
   if (arrival.verdict != InFlight::Verdict::kComplete) return;
   if (cyclic) {
@@ -166,7 +179,7 @@ void Master::link_changed(Port port, bool up, Time now) noexcept {
   state.ports[static_cast<std::size_t>(port)] = up && (port == Port::kPrimary || state.settings.redundant);
   state.single_copies = 0;
   if (state.settings.redundant && !state.both_ends()) {
-    state.ring_open = true;
+    state.ring_is(true, state.ports[0] ? state.scan.devices().size() : 0);
     state.in_flight.await_one_copy();
   }
   if (!state.ports[0] && state.scan.running()) {
@@ -174,7 +187,7 @@ void Master::link_changed(Port port, bool up, Time now) noexcept {
     state.scan_wanted = true;
   }
   if (state.any_port()) {
-    if (!state.reached) state.heard = now;  // time to answer
+    if (!state.reached) state.heard = state.cycle;  // time to answer
     if (!had_port) {
       for (Robot& robot : state.robots) robot.trouble = kLookedThrough;
     }
@@ -208,7 +221,8 @@ const Station& Master::station(std::size_t robot) const noexcept { return state_
 std::string_view Master::trouble(std::size_t index) const noexcept {
   const Robot& robot = state_->robots[index];
   if (!robot.trouble.empty()) return robot.trouble;
-  if (robot.misses >= kMissesToSay) return "its process data is not counted as it should be: inputs are not taken";
+  if (robot.misses >= kMissesToSay) return state_->why_not_counted(robot);
+  if (robot.station.operational() && state_->ring_open) return state_->ring_trouble;
   return robot.station.trouble();
 }
 

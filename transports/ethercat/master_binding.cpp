@@ -1,5 +1,6 @@
 // Which device of the chain is which robot, and what to say of those that are none.
 #include <algorithm>
+#include <iterator>
 
 #include "transports/ethercat/master_state.hpp"
 
@@ -19,10 +20,17 @@ bool is_meca500(const SiiIdentity& identity) noexcept {
   return identity.vendor == kMecademicVendor && identity.product == kMeca500Product;
 }
 
-Text not_there(unsigned position, std::size_t count) noexcept {
-  if (count == 0) return Text::format("position %u is not there: no device answers; check cable and power", position);
-  return Text::format("position %u is not there: %zu %s; check cable and power behind position %zu", position, count,
-                      count == 1 ? "device answers" : "devices answer", count - 1);
+// In a ring there may be devices behind it.
+Text not_there(unsigned position, std::span<const ChainScan::Device> devices) noexcept {
+  const char* const answer = devices.size() == 1 ? "device answers" : "devices answer";
+  if (devices.empty())
+    return Text::format("position %u is not there: no device answers; check cable and power", position);
+  const auto behind = std::ranges::lower_bound(devices, position, {}, &ChainScan::Device::position);
+  if (behind == devices.begin())
+    return Text::format("position %u is not there: %zu %s; check its power and the cable to it", position,
+                        devices.size(), answer);
+  return Text::format("position %u is not there: %zu %s; check cable and power behind position %u", position,
+                      devices.size(), answer, unsigned{std::prev(behind)->position});
 }
 
 }  // namespace
@@ -52,7 +60,7 @@ const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) c
   const unsigned position = robot.place.position;
   const auto at = std::ranges::find(devices, robot.place.position, &ChainScan::Device::position);
   if (at == devices.end()) {
-    why = not_there(position, devices.size());
+    why = not_there(position, devices);
     return nullptr;
   }
   const SiiIdentity& id = at->identity;

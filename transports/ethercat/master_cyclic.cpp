@@ -10,18 +10,18 @@ namespace {
 // pulled.
 constexpr unsigned kBelieved = 2;
 constexpr unsigned kMissesToAsk = 2;
+constexpr std::uint16_t kReadOnly = 1;  // of a command that reads and writes
 // An answer of the reference's clock is of use for the others once all are set.
 constexpr std::uint16_t kTimeSize = 8;
 
 }  // namespace
 
-void MasterState::begin_cycle(Time now) noexcept {
+void MasterState::begin_cycle() noexcept {
   ++cycle;
   ++counters.cycles;
   cyclic_due = any_port();
   chain_state_added = false;
   next_robot = 0;
-  if (!heard) heard = now;
   for (Robot& robot : robots) {
     const bool operational = robot.station.operational();
     if (robot.was_operational && !operational && !closing) ++robot.counters.losses;
@@ -70,7 +70,7 @@ void MasterState::cyclic_reply(const InFlight::Frame& frame, const Purpose& purp
                                Bytes data, Time now) noexcept {
   if (purpose.kind == Purpose::Kind::kChainState) {
     wire::Reader in(data);
-    return chain_state(working_counter, in.u16(), now);
+    return chain_state(working_counter, in.u16());
   }
   if (purpose.kind == Purpose::Kind::kReferenceTime) {
     if (working_counter > 0) reference_time(data, now);
@@ -113,9 +113,23 @@ void MasterState::miss(Robot& robot, std::uint16_t working_counter) noexcept {
   if (++robot.misses >= kMissesToAsk && robot.misses % kMissesToAsk == 0) robot.al_due = true;
 }
 
-void MasterState::chain_state(std::uint16_t devices, std::uint16_t or_of_states, Time now) noexcept {
+// Of the last cycle that missed.
+std::string_view MasterState::why_not_counted(const Robot& robot) const noexcept {
+  if (robot.wrong_counter == 0)
+    return "takes no part in the process data (working counter 0), so its inputs are not taken; restart it if it stays "
+           "so";
+  if (settings.separate || robot.cannot_lrw || robot.wrong_counter > kBothWays)
+    return "is counted more than once in the process data, so its inputs are not taken; another device answers for it";
+  if (robot.wrong_counter == kReadOnly)
+    return "gives inputs but takes no outputs (working counter 1 where 3 is right), so its inputs are not taken; "
+           "restart "
+           "it if it stays so";
+  return "takes outputs but gives no inputs (working counter 2 where 3 is right); restart it if it stays so";
+}
+
+void MasterState::chain_state(std::uint16_t devices, std::uint16_t or_of_states) noexcept {
   if (devices > 0) {
-    heard = now;
+    heard = cycle;
     reached = true;
     silent = false;
   }

@@ -66,17 +66,19 @@ struct MasterState {
   void give_up_overdue(Time now) noexcept;
   void dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept;
   void lost(const InFlight::Frame& frame, Time now) noexcept;
+  void ring_is(bool open, std::size_t reached_from_primary) noexcept;
   void out_of_reach(std::string_view why, Time now) noexcept;
 
   // master_cyclic.cpp
-  void begin_cycle(Time now) noexcept;
+  void begin_cycle() noexcept;
   Bytes cyclic_frame(Time now) noexcept;
   bool add_process_data(std::size_t robot) noexcept;
   void cyclic_reply(const InFlight::Frame& frame, const Purpose& purpose, std::uint16_t working_counter, Bytes data,
                     Time now) noexcept;
-  void chain_state(std::uint16_t count, std::uint16_t states, Time now) noexcept;
+  void chain_state(std::uint16_t count, std::uint16_t states) noexcept;
   void take_input(Robot& robot, Bytes input, std::uint64_t cycle) noexcept;
   void miss(Robot& robot, std::uint16_t working_counter) noexcept;
+  std::string_view why_not_counted(const Robot& robot) const noexcept;
   void separate_reply(Robot& robot, const InFlight::Frame& frame, bool inputs, std::uint16_t working_counter,
                       Bytes data, Time now) noexcept;
   void reference_time(Bytes data, Time now) noexcept;
@@ -113,14 +115,15 @@ struct MasterState {
   std::uint64_t cycle = 0;
   bool cyclic_due = false, chain_state_added = false;
   std::size_t next_robot = 0;
-  std::optional<Time> heard;            // when somebody in the chain last answered
+  std::uint64_t heard = 0;              // the cycle in which somebody in the chain last answered
   bool reached = false;                 // since the last out_of_reach()
   bool silent = false;                  // out_of_reach() was called for it, and nobody has answered since
   std::uint16_t count = 0, states = 0;  // of the last cycle that came back
   unsigned count_stands = 0;            // cycles that it has been the same
   std::optional<std::uint16_t> scanned_count;
   bool ring_open = false;
-  unsigned single_copies = 0;  // cyclic frames in a row of which one copy was missed
+  transports::LinkDetail ring_trouble;  // where it is open, in words
+  unsigned single_copies = 0;           // cyclic frames in a row of which one copy was missed
 
   // Service
   bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;

@@ -10,6 +10,8 @@ namespace meca::ethercat::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 // Every robot but `but` takes fresh inputs in every cycle from now on.
 void expect_no_missed_cycle(Segment& segment, std::size_t robots, std::size_t but) {
@@ -119,12 +121,32 @@ TEST(MasterFaults, AWrongWorkingCounterOfOneRobotLeavesTheOthersAlone) {
   EXPECT_FALSE(segment.master().take_fresh(1));
   EXPECT_GE(segment.master().counters(1).working_counter_misses, 200u);
   EXPECT_EQ(segment.master().counters(0).working_counter_misses, 0u);
-  EXPECT_THAT(segment.master().trouble(1), HasSubstr("not counted as it should be"));
+  EXPECT_THAT(segment.master().trouble(1), StartsWith("takes outputs but gives no inputs (working counter 2 "));
   segment.every_cycle = {};
   segment.device(1).faults().working_counter = 0;
   segment.run(10ms);
   EXPECT_TRUE(segment.master().take_fresh(1));
   EXPECT_EQ(segment.master().trouble(1), "");
+}
+
+TEST(MasterFaults, AWrongWorkingCounterIsToldWithWhatItMeans) {
+  constexpr std::pair<int, const char*> kAdded[] = {
+      {-1, "takes outputs but gives no inputs (working counter 2 where 3 is right); restart it if it stays so"},
+      {-2,
+       "gives inputs but takes no outputs (working counter 1 where 3 is right), so its inputs are not taken; restart "
+       "it if it stays so"},
+      {-3,
+       "takes no part in the process data (working counter 0), so its inputs are not taken; restart it if it stays "
+       "so"},
+      {+1, "is counted more than once in the process data, so its inputs are not taken; another device answers for it"},
+  };
+  for (const auto& [added, words] : kAdded) {
+    Segment segment(settings_for(1));
+    ASSERT_TRUE(segment.start());
+    segment.device(0).faults().working_counter = added;
+    segment.run(50ms);
+    EXPECT_EQ(segment.master().trouble(0), words);
+  }
 }
 
 TEST(MasterFaults, AnAlErrorOfOneRobotIsAcknowledgedAndItClimbsAgain) {
@@ -150,6 +172,20 @@ TEST(MasterFaults, AfterAPauseOfTheMasterTheWatchdogHasTrippedAndAllComeBack) {
   segment.run(30ms);
   ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.device(i).counters().watchdog_expiries, 1u);
+}
+
+// It once took its own pause for a pulled cable, and brought all robots up again from INIT.
+TEST(MasterFaults, APauseOfTheMasterIsNotTakenForSilenceOfTheRobots) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  const auto mails = segment.device(2).counters().mails;
+  segment.pause(300ms);
+  segment.every_cycle = [](Segment& s) { EXPECT_THAT(s.master().trouble(2), Not(HasSubstr("no device answers"))); };
+  segment.run(30ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  EXPECT_EQ(segment.master().counters().scans, 1u);
+  EXPECT_EQ(segment.device(2).counters().mails, mails);  // not configured anew
 }
 
 TEST(MasterFaults, ACutCableTakesTheRobotsBehindItAndGivesThemBack) {

@@ -52,6 +52,32 @@ TEST_P(CutAt, NoRobotLeavesOpOrMissesACycleAndTheRingIsOpenUntilItIsHealed) {
 }
 INSTANTIATE_TEST_SUITE_P(Cables, CutAt, testing::Values(0, 1, 2, 3));
 
+TEST(MasterRedundancy, AnOpenRingIsToldWithThePlaceToLookAt) {
+  for (const auto& [cut, place] : {std::pair<std::size_t, const char*>{0, "before the first device"},
+                                   {1, "behind position 0"},
+                                   {2, "behind position 1"},
+                                   {3, "behind position 2"}}) {
+    Segment segment(ring_of(3));
+    ASSERT_TRUE(segment.start());
+    EXPECT_EQ(segment.master().trouble(0), "");
+    segment.chain().cut(cut);
+    if (cut == 0) segment.set_link(Port::kPrimary, false);
+    if (cut == 3) segment.set_link(Port::kSecondary, false);
+    segment.run(100ms);
+    EXPECT_EQ(segment.master().trouble(1),
+              "the ring is open " + std::string(place) + "; the next cut takes robots away; check the cable there");
+  }
+}
+
+TEST(MasterRedundancy, ARobotWithoutPowerIsLookedForBehindTheOneBeforeIt) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start());
+  segment.chain().set_powered(1, false);
+  segment.run(1s);
+  EXPECT_EQ(segment.master().trouble(1),
+            "position 1 is not there: 2 devices answer; check cable and power behind position 0");
+}
+
 TEST(MasterRedundancy, ACutThatNoCarrierTellsOfIsSurvivedToo) {
   for (const std::size_t cut : {0, 3}) {
     Segment segment(ring_of(3));
