@@ -54,6 +54,7 @@ class Segment {
   std::function<Fate(std::size_t frame)> fate;   // of the n-th reply
   std::function<void(Segment&)> every_cycle;     // before begin_cycle()
   std::function<void(Bytes, Chain::Side)> sent;  // sees every frame before the devices do
+  std::function<void(Bytes)> came_back;          // and when it has passed them
   std::function<void(bool into)> around_master;  // called before and after every call of the master
 
   // Cycles; false as soon as `until` holds.
@@ -138,6 +139,7 @@ class Segment {
     const auto out = chain_.process(side, std::span(reply.bytes).first(reply.size), now_);
     if (!out) return;
     reply.side = *out;
+    if (came_back) came_back(Bytes(reply.bytes).first(reply.size));
     const Fate what = fate ? fate(replies_++) : Fate{};
     if (what.lost) return;
     reply.at += what.held_up;
