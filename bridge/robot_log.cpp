@@ -79,9 +79,11 @@ void RobotLog::look_at_link(const CycleRecord& record, Time now, std::vector<Log
 // What is not as it should be though the link is up: half of a ring, inputs that do not come.
 void RobotLog::look_at_reserve(const CycleRecord& record, Time now, std::vector<LogLine>& lines) {
   if (record.link != LinkState::kUp || !said_up_ || record.link_detail == said_detail_) return;
-  if (now < quiet_[kLinkTrouble].until) return;
+  if (events_[kLinkTrouble].is_quiet(now)) return;
   if (!record.link_detail.empty()) {
     say(kLinkTrouble, Level::kWarning, "link up, but: " + std::string(record.link_detail.view()), now, lines);
+  } else {
+    say(kLinkSound, Level::kInfo, "link up, as it should be", now, lines);
   }
   said_detail_ = record.link_detail;
 }

@@ -32,6 +32,7 @@ class RobotLog {
     kLinkUp,
     kLinkDown,
     kLinkTrouble,  // another reason why there is no link, or why it is not as it should be
+    kLinkSound,    // it is again
     kFirmware,
     kMismatch,
     kOwnerCame,
