@@ -12,8 +12,8 @@ LoopLog::LoopLog(const std::vector<std::string>& robots) {
 
 void LoopLog::look(const PaceFacts& pace, Time now, std::vector<LogLine>& lines) {
   const std::uint64_t news = pace.missed_cycles - missed_cycles_;
+  if (news == 0 || missed_.is_quiet(now)) return;  // what comes in the quiet time is told after it
   missed_cycles_ = pace.missed_cycles;
-  if (news == 0) return;
   missed_.say(LogLine::Level::kWarning,
               robots_ + ": missed cycles (the machine woke the loop too late): " + std::to_string(news) + ", " +
                   std::to_string(pace.missed_cycles) + " since the start",

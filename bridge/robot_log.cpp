@@ -147,7 +147,8 @@ void RobotLog::look_at_trouble(const CycleRecord& record, Time now, std::vector<
 void RobotLog::look(const LogFacts& facts, Time now, std::vector<LogLine>& lines) {
   const auto compare = [&](Event event, std::uint64_t LogFacts::*counter, Level level, const char* what) {
     const std::uint64_t news = facts.*counter - facts_.*counter;
-    if (news == 0) return;
+    if (news == 0 || events_[event].is_quiet(now)) return;  // what comes in the quiet time is told after it
+    facts_.*counter = facts.*counter;
     say(event, level,
         std::string(what) + ": " + std::to_string(news) + ", " + std::to_string(facts.*counter) + " since the start",
         now, lines);
@@ -156,7 +157,6 @@ void RobotLog::look(const LogFacts& facts, Time now, std::vector<LogLine>& lines
           "dropped state records (the publisher came too late for them)");
   compare(kLost, &LogFacts::receipts_lost, Level::kError, "lost receipts");
   compare(kRefused, &LogFacts::refused_writes, Level::kWarning, "samples refused by DDS");
-  facts_ = facts;
 }
 
 }  // namespace meca::bridge

@@ -211,5 +211,12 @@ TEST(RobotLog, CountersThatRiseAreToldWithTheirTotal) {
       ElementsAre("arm1: lost receipts: 1, 1 since the start", "arm1: samples refused by DDS: 2, 5 since the start"));
 }
 
+TEST(RobotLog, WhatACounterCountedInTheQuietTimeIsToldAfterIt) {
+  RobotLog log("arm1");
+  said(log, LogFacts{.records_dropped = 1}, 0s);
+  EXPECT_THAT(said(log, LogFacts{.records_dropped = 250}, 1s), IsEmpty());
+  EXPECT_THAT(said(log, LogFacts{.records_dropped = 250}, 10s), ElementsAre(HasSubstr(": 249, 250 since the start")));
+}
+
 }  // namespace
 }  // namespace meca::bridge
