@@ -1,5 +1,6 @@
 // Any bytes as a script of faults: every line becomes an event, in the order of time, or a complaint in one line of
-// printable text with its number; what is understood is done to a robot and its network.
+// printable text with its number; what is understood is done to a robot and its network, on
+// each bus.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
@@ -22,15 +23,20 @@ void check(std::string_view complaint) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static Robot robot;
   static PanelAnswer answer;
-  NetworkFaults faults;
+  NetworkFaults ethernet_ip, ethercat;
+  ethercat.bus = Fieldbus::kEthercat;
   const Script script = parse_script({reinterpret_cast<const char*>(data), size}, "f");
   for (const std::string& mistake : script.mistakes) check(mistake);
   Time previous{};
   for (const ScriptLine& line : script.lines) {
     if (line.at < previous || line.words.empty()) std::abort();
     previous = line.at;
-    apply(line.request, robot, &faults, answer);
-    if (to_text(answer).empty()) std::abort();
+    for (NetworkFaults* faults : {&ethernet_ip, &ethercat}) {
+      apply(line.request, robot, faults, answer);
+      if (to_text(answer).empty()) std::abort();
+      const bool refused = answer.kind == PanelAnswer::Kind::kRefused;
+      if (!misplaced(line.request, faults->bus).empty() && !refused) std::abort();
+    }
     robot.step_without_outputs(std::chrono::milliseconds(1));
   }
   return 0;

@@ -26,7 +26,8 @@ void check(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static sim::Robot robot;
   static sim::PanelAnswer answer;
-  sim::NetworkFaults network;
+  sim::NetworkFaults network, ethercat;
+  ethercat.bus = sim::Fieldbus::kEthercat;
   net::LineSplitter lines(kLongest);
   lines.add({reinterpret_cast<const char*>(data), size});
   const auto say = [&](const net::LineSplitter::Line& line) {
@@ -35,6 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (const auto* complaint = std::get_if<std::string>(&parsed)) return check(sim::panel_error(*complaint));
     sim::apply(std::get<sim::PanelRequest>(parsed), robot, &network, answer);
     robot.step_without_outputs(std::chrono::milliseconds(1));
+    check(sim::to_text(answer));
+    sim::apply(std::get<sim::PanelRequest>(parsed), robot, &ethercat, answer);
     check(sim::to_text(answer));
   };
   while (const auto line = lines.next()) say(*line);

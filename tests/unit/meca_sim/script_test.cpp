@@ -87,12 +87,22 @@ TEST(Script, TakesTimesInSecondsAndMilliseconds) {
   }
 }
 
-TEST(Script, OfTheExampleIsGood) {
-  std::ifstream file(MECA_SOURCE_DIR "/config/faults.txt");
+Script example(const std::string& name, const ScriptStage& stage) {
+  std::ifstream file(MECA_SOURCE_DIR "/config/" + name);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const Script script = parse_script(text, "config/faults.txt");
+  return parse_script(text, name, stage);
+}
+
+TEST(Script, OfTheExampleIsGood) {
+  const Script script = example("faults.txt", {Fieldbus::kEthernetIp, {"arm1"}});
   EXPECT_THAT(script.mistakes, IsEmpty());
   EXPECT_EQ(script.lines.size(), 19u);
+}
+
+TEST(Script, OfTheExampleForEthercatIsGood) {
+  const Script script = example("faults_ethercat.txt", {Fieldbus::kEthercat, {"arm1", "arm2", "arm3"}});
+  EXPECT_THAT(script.mistakes, IsEmpty());
+  EXPECT_EQ(script.lines.size(), 23u);
 }
 
 }  // namespace
