@@ -44,9 +44,10 @@ Station::Station(const Arguments& arguments, Narrator::Say say) : say_(std::move
   std::vector<Narrator::Say> sayings;
   for (const std::string& name : arguments.names) sayings.push_back(saying(name));
   network_ = open_network(arguments, sayings);
-  for (std::size_t i = 0; i < arguments.names.size(); ++i) {
+  for (const std::string& name : arguments.names) open_panel(arguments, seats_.emplace_back(Seat{name, nullptr}));
+  // Last, because whoever reads it may begin.
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
     say_(Level::kInfo, describe(arguments, i) + "; " + network_->place(i));
-    open_panel(arguments, seats_.emplace_back(Seat{arguments.names[i], nullptr}));
   }
 }
 
