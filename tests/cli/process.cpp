@@ -56,12 +56,14 @@ bool Process::read_more() {
 }
 
 int Process::wait() {
+  if (pid_ < 0) return exit_code_;
   while (read_more()) {
   }
   int status = 0;
   waitpid(pid_, &status, 0);
   pid_ = -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return exit_code_;
 }
 
 bool Process::wait_for_output(const std::string& text) {

@@ -16,7 +16,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const;
-  int wait();  // exit code, or 128 + signal
+  int wait();  // exit code, or 128 + signal; the same again when it has ended
   // Reads until the text has come or the program has ended; true when it has come.
   bool wait_for_output(const std::string& text);
 
@@ -26,6 +26,7 @@ class Process {
   bool read_more();
 
   pid_t pid_ = -1;
+  int exit_code_ = -1;
   int pipe_ = -1;
   std::string output_;
 };

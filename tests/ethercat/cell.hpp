@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "tests/network_namespace.hpp"
 #include "tests/programs/programs.hpp"
 
@@ -18,6 +20,19 @@ class EthercatCell : public testing::Test {
     if (!network_.usable()) GTEST_SKIP() << kNoNamespace;
     network_.cable(kInterface, "meca1");
     network_.cable("ring0", "ring1");
+  }
+
+  // What both said is the better half of an explanation.
+  void TearDown() override {
+    if (!HasFailure()) return;
+    if (bridge_) {
+      bridge_->stop();
+      std::cout << "meca-bridge said:\n" << bridge_->log();
+    }
+    if (sim_) {
+      sim_->stop();
+      std::cout << "meca-sim said:\n" << sim_->log();
+    }
   }
 
   // arm1, arm2, ... at the robots' ends.
