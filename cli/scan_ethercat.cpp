@@ -22,12 +22,14 @@ std::string print(const char* format, Arguments... arguments) {
 }
 
 bool is_known_meca500(const ScannedDevice& d) { return d.identity && ethercat::is_meca500(*d.identity); }
+// Who it is cannot be read while a master works with it; how its process data lies can.
+bool looks_like_meca500(const ScannedDevice& d) { return !d.identity && d.process_data_of_meca500; }
 bool has_error(const ScannedDevice& d) { return (d.al_status & ethercat::kAlError) != 0; }
 std::string at(const ScannedDevice& d) { return "position " + std::to_string(d.position); }
 
 std::string name_of(const ScannedDevice& d) {
   if (is_known_meca500(d)) return "Meca500";
-  return !d.identity && d.process_data_of_meca500 ? "Meca500?" : "-";
+  return looks_like_meca500(d) ? "Meca500?" : "-";
 }
 
 std::string state_of(const ScannedDevice& d) {
@@ -151,9 +153,12 @@ std::string chain_text(const ScannedChain& chain) {
     remarks += remarks_on(device);
   }
   const auto robots = std::ranges::count_if(chain.devices, is_known_meca500);
-  return table(rows) + chain.interface + ": " + std::to_string(chain.devices.size()) +
-         (chain.devices.size() == 1 ? " device, " : " devices, ") + (robots == 0 ? "no" : std::to_string(robots)) +
-         " Meca500\n" + remarks + remarks_on(chain);
+  const auto perhaps = std::ranges::count_if(chain.devices, looks_like_meca500);
+  std::string found = chain.interface + ": " + std::to_string(chain.devices.size()) +
+                      (chain.devices.size() == 1 ? " device" : " devices");
+  if (robots > 0 || perhaps == 0) found += ", " + (robots == 0 ? "no" : std::to_string(robots)) + " Meca500";
+  if (perhaps > 0) found += ", " + std::to_string(perhaps) + " perhaps a Meca500";
+  return table(rows) + found + "\n" + remarks + remarks_on(chain);
 }
 
 Json to_json(const ScannedChain& chain, const ScannedDevice& d) {

@@ -73,6 +73,8 @@ TEST(ChainText, SaysWhyADeviceIsNotNamedAndWhatItLooksLike) {
   d.process_data_of_meca500 = true;
   const auto text = chain_text({"eth1", {d}, false, ""});
   EXPECT_THAT(text, HasSubstr("0x1001   -      Meca500?  -"));
+  EXPECT_THAT(text, HasSubstr("perhaps a Meca500\n"));
+  EXPECT_THAT(text, Not(HasSubstr("no Meca500")));
   EXPECT_THAT(text, HasSubstr("its SII is busy; its process data is laid out as that of a Meca500\n"));
 }
 
