@@ -221,9 +221,9 @@ const Station& Master::station(std::size_t robot) const noexcept { return state_
 std::string_view Master::trouble(std::size_t index) const noexcept {
   const Robot& robot = state_->robots[index];
   if (!robot.trouble.empty()) return robot.trouble;
+  if (!robot.station.operational()) return robot.station.trouble();
   if (robot.misses >= kMissesToSay) return state_->why_not_counted(robot);
-  if (robot.station.operational() && state_->ring_open) return state_->ring_trouble;
-  return robot.station.trouble();
+  return state_->ring_open ? state_->ring_trouble.view() : robot.station.trouble();
 }
 
 const RobotCounters& Master::counters(std::size_t robot) const noexcept { return state_->robots[robot].counters; }

@@ -110,8 +110,9 @@ class Master {
   bool take_fresh(std::size_t robot) noexcept;  // new inputs since the last call
   const image::InputBytes& input(std::size_t robot) const noexcept;
   const Station& station(std::size_t robot) const noexcept;
-  // Why it is not operational; a sentence without full stop. The chain's trouble where that is the reason ("no carrier
-  // on eth1" is the owner's to say), else the station's.
+  // Why it is not operational, or what it lacks though it is: its part in the process data, the other half of a ring. A
+  // sentence without full stop. The chain's trouble where that is the reason ("no carrier on eth1" is the owner's to
+  // say), else the station's.
   std::string_view trouble(std::size_t robot) const noexcept;
   const RobotCounters& counters(std::size_t robot) const noexcept;
 

@@ -146,6 +146,9 @@ TEST(MasterFaults, AWrongWorkingCounterIsToldWithWhatItMeans) {
     segment.device(0).faults().working_counter = added;
     segment.run(50ms);
     EXPECT_EQ(segment.master().trouble(0), words);
+    segment.device(0).raise_al_error(0x001A, segment.now());  // a later trouble is the one to be told
+    segment.run(5ms);
+    EXPECT_THAT(segment.master().trouble(0), StartsWith("the robot at position 0 went to SAFEOP with an error: "));
   }
 }
 
