@@ -33,12 +33,32 @@ Text not_there(unsigned position, std::span<const ChainScan::Device> devices) no
                       devices.size(), answer, unsigned{std::prev(behind)->position});
 }
 
+// The alias is one of the words that the checksum is for.
+bool is_believed(const ChainScan::Device& device) noexcept {
+  return device.identified && is_meca500(device.identity) && device.identity.checksum_right;
+}
+
+Text no_such_alias(unsigned alias, std::span<const ChainScan::Device> devices) noexcept {
+  const char* const answer = devices.size() == 1 ? "device answers" : "devices answer";
+  const auto doubtful = std::ranges::find_if(devices, [](const ChainScan::Device& device) {
+    return device.identified && is_meca500(device.identity) && !device.identity.checksum_right;
+  });
+  if (doubtful != devices.end())
+    return Text::format(
+        "no robot with alias %u is there: %zu %s, and the checksum of the SII at position %u is wrong, so that its "
+        "alias "
+        "is not believed; write that SII anew, or name its position",
+        alias, devices.size(), answer, unsigned{doubtful->position});
+  return Text::format("no robot with alias %u is there: %zu %s; check cable and power, and the alias in its SII", alias,
+                      devices.size(), answer);
+}
+
 }  // namespace
 
 const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) const noexcept {
   const auto devices = scan.devices();
   const auto alias_of = [](const ChainScan::Device& device) {
-    return device.identified && is_meca500(device.identity) ? device.identity.alias : std::uint16_t{0};
+    return is_believed(device) ? device.identity.alias : std::uint16_t{0};
   };
   if (robot.place.alias) {
     const unsigned alias = *robot.place.alias;
@@ -52,9 +72,7 @@ const ChainScan::Device* MasterState::device_of(const Robot& robot, Text& why) c
       }
       found = &device;
     }
-    if (found == nullptr)
-      why = Text::format("no robot with alias %u is there: %zu %s; check cable and power, and the alias in its SII",
-                         alias, devices.size(), devices.size() == 1 ? "device answers" : "devices answer");
+    if (found == nullptr) why = no_such_alias(alias, devices);
     return found;
   }
   const unsigned position = robot.place.position;

@@ -135,6 +135,23 @@ TEST(MasterStart, AMissingAliasIsNamedAndADoubleOneToo) {
   EXPECT_THAT(segment.master().trouble(1), StartsWith("no robot with alias 5 is there: 2 devices answer; "));
 }
 
+TEST(MasterStart, AnAliasWithAWrongChecksumIsNotBelieved) {
+  std::vector<DeviceSettings> devices(2);
+  devices[1].esc.sii = make_meca500_sii(5, 1);
+  devices[1].esc.sii[2 * sii::kChecksum] ^= std::byte{1};
+  MasterSettings settings;
+  settings.robots = {{0, 5}};
+  Segment segment(settings, devices);
+  segment.run(1s);
+  EXPECT_EQ(
+      segment.master().trouble(0),
+      "no robot with alias 5 is there: 2 devices answer, and the checksum of the SII at position 1 is wrong, so that "
+      "its alias is not believed; write that SII anew, or name its position");
+  settings.robots = {{1, std::nullopt}};
+  Segment by_position(settings, devices);
+  EXPECT_TRUE(by_position.start()) << by_position.master().trouble(0);
+}
+
 // It was once "at position 0", wherever it stood.
 TEST(MasterStart, ARobotWithAnAliasIsCalledByItInEverySentence) {
   std::vector<DeviceSettings> devices(2);
