@@ -127,6 +127,16 @@ TEST_F(EthercatRecovery, ARefusedStateIsToldInWordsAndTriedAgain) {
   EXPECT_TRUE(bus.until_up()) << bus.detail(0);
 }
 
+TEST_F(EthercatRecovery, AnEmergencyOfARobotIsCountedWithItsCode) {
+  ChainHost host(chain_of(2));
+  Segment bus(first(2));
+  ASSERT_TRUE(bus.until_up()) << bus.detail();
+  host.with(1, [](auto& device) { device.send_emergency({.code = 0x8612}); });
+  EXPECT_TRUE(bus.until([&] { return bus.counter("emergency_code", 1) == 0x8612; }));
+  EXPECT_EQ(bus.counter("emergencies", 1), 1);
+  EXPECT_EQ(bus.counter("emergency_code", 0), 0);
+}
+
 TEST_F(EthercatRecovery, RepliesThatAreLostForAMomentCostImagesAndNothingElse) {
   ChainHost host(chain_of(2));
   Segment bus(first(2));

@@ -6,13 +6,14 @@
 namespace meca::ethercat {
 namespace {
 
-constexpr std::array<transports::CounterInfo, 29> kInfo{{
+constexpr std::array<transports::CounterInfo, 30> kInfo{{
     {"al_state", ""},
     {"al_status_code", ""},
     {"images", ""},
     {"working_counter_misses", ""},
     {"losses", ""},
     {"emergencies", ""},
+    {"emergency_code", ""},
     {"sdo_aborts", ""},
     {"mailbox_repeats", ""},
     {"lost_frames", ""},
@@ -58,6 +59,7 @@ void count(const Master& master, std::size_t robot, const BusFacts& facts, std::
       number(r.working_counter_misses),
       number(r.losses),
       number(s.emergencies),
+      station.last_emergency() ? station.last_emergency()->code : 0,
       number(s.sdo_aborts),
       number(s.mailbox_repeats),
       number(m.lost_frames),
