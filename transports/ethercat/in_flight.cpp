@@ -49,12 +49,13 @@ bool InFlight::add(const Request& request) noexcept {
   return true;
 }
 
-Bytes InFlight::finish(unsigned copies, Time now) noexcept {
+Bytes InFlight::finish(const Copies& copies, Time now) noexcept {
   if (open_ == nullptr || open_->count == 0) return {};
   Frame& frame = *open_;
   open_ = nullptr;
   frame.in_flight = true;
-  frame.awaited = copies;
+  frame.awaited = copies.count;
+  frame.from = copies.from;
   frame.sent = now;
   slot_of_index_[frame.index] = static_cast<std::uint8_t>(&frame - frames_.data());
   ++next_index_;  // an index rests as long as possible
@@ -106,6 +107,7 @@ InFlight::Arrival InFlight::received(std::size_t port, Bytes bytes) noexcept {
   Frame* frame = of_index(first->index());
   if (frame == nullptr || frame->seen[port] || !matches(*frame, bytes)) return {Verdict::kUnexpected, frame, {}};
   frame->seen[port] = true;
+  if (frame->from && *frame->from != port) return {Verdict::kOtherEnd, frame, {}};
   if (++frame->arrived == 1) {
     if (frame->awaited <= 1) return {Verdict::kComplete, frame, bytes};
     frame->size = bytes.size();
@@ -130,7 +132,10 @@ void InFlight::release(Frame& frame) noexcept {
 }
 
 void InFlight::await_one_copy() noexcept {
-  for (Frame& frame : frames_) frame.awaited = 1;
+  for (Frame& frame : frames_) {
+    frame.awaited = 1;
+    frame.from.reset();
+  }
 }
 
 std::optional<Time> InFlight::next_overdue(const Timeouts& timeouts) const noexcept {

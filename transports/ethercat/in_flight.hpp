@@ -63,6 +63,7 @@ class InFlight {
     bool in_flight = false;
     std::uint8_t index = 0;
     unsigned awaited = 1, arrived = 0;  // copies
+    std::optional<std::size_t> from;    // the only port whose copy counts
     std::array<bool, 2> seen{};         // by port
     std::size_t count = 0;              // of datagrams
     struct Expected {
@@ -84,14 +85,19 @@ class InFlight {
   // False: does not fit; the frame is as before.
   bool add(const Request& request) noexcept;
   std::size_t room() const noexcept;  // bytes of data that one more datagram may have
-  // The frame, which is in flight from now on and comes back `copies` times; valid until the next begin(). Empty when
-  // nothing was added.
-  Bytes finish(unsigned copies, Time now) noexcept;
+  // The frame, which is in flight from now on and comes back as often as `copies` says; valid until the next begin().
+  // Empty when nothing was added.
+  struct Copies {
+    unsigned count = 1;
+    std::optional<std::size_t> from{};  // with one: the port that it has to come from
+  };
+  Bytes finish(const Copies& copies, Time now) noexcept;
 
   // ---- Receiving
   enum class Verdict : std::uint8_t {
     kComplete,    // `reply` holds it; release() it
     kFirstCopy,   // the other one is awaited
+    kOtherEnd,    // one that was not waited for (Copies::from)
     kUnexpected,  // of nobody here: foreign, too late, or for the second time
     kMalformed,
   };

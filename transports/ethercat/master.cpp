@@ -53,7 +53,7 @@ void MasterState::give_up_overdue(Time now) noexcept {
   while (InFlight::Frame* const frame = in_flight.overdue(timeouts(), now)) {
     ++counters.lost_frames;
     // Of a ring one copy may have come: then that is what there is to know.
-    if (frame->arrived > 0 && frame->use == InFlight::Use::kCyclic) ++single_copies;
+    if (frame->arrived > 0 && frame->use == InFlight::Use::kCyclic) missed_a_copy(*frame);
     if (frame->arrived > 0)
       dispatch(*frame, Bytes(frame->merged).first(frame->size), now);
     else
@@ -66,6 +66,11 @@ void MasterState::give_up_overdue(Time now) noexcept {
     silent = true;
     out_of_reach("no device answers; check the cable to the first robot and its power", now);
   }
+}
+
+void MasterState::missed_a_copy(const InFlight::Frame& frame) noexcept {
+  talking_port = frame.seen[0] ? 0 : 1;
+  if (++single_copies == kMissedCopies) ring_is(true, talking_port == 0 ? count : 0);
 }
 
 void MasterState::ring_is(bool open, std::size_t reached_from_primary) noexcept {
@@ -152,6 +157,7 @@ void Master::received(Port port, Bytes frame, Time now) noexcept {
   const auto arrival = state.in_flight.received(static_cast<std::size_t>(port), frame);
   if (arrival.verdict == InFlight::Verdict::kMalformed) ++state.counters.malformed_frames;
   if (arrival.verdict == InFlight::Verdict::kUnexpected) ++state.counters.unexpected_frames;
+  if (arrival.verdict == InFlight::Verdict::kOtherEnd) state.single_copies = 0;
   if (arrival.frame == nullptr || arrival.verdict == InFlight::Verdict::kUnexpected) return;
   ++state.counters.received_frames;
   const bool cyclic = arrival.frame->use == InFlight::Use::kCyclic;

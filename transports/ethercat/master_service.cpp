@@ -34,7 +34,7 @@ Bytes MasterState::service_frame(Time now) noexcept {
     add_robots(now);
   }
   both_ports = !by_position;
-  const Bytes frame = in_flight.finish(by_position ? 1 : copies(), now);
+  const Bytes frame = in_flight.finish(by_position ? InFlight::Copies{} : copies(), now);
   service_in_flight = !frame.empty();
   return frame;
 }

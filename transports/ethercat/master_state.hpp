@@ -56,16 +56,19 @@ struct MasterState {
   // master.cpp
   bool any_port() const noexcept { return ports[0] || ports[1]; }
   bool both_ends() const noexcept { return settings.redundant && ports[0] && ports[1]; }
-  // How many copies of a frame come back. A port that has carrier and yet brings nothing back (a cable that leads
-  // elsewhere) must not make every image as old as the time-out: it is waited for now and then only.
-  unsigned copies() const noexcept {
-    constexpr unsigned kMissed = 3, kNowAndThen = 128;
-    return both_ends() && (single_copies < kMissed || cycle % kNowAndThen == 0) ? 2 : 1;
+  // What comes back of a frame. A port that has carrier and yet brings nothing back (a cable that leads elsewhere) must
+  // not make every image as old as the time-out: it is not waited for until something comes from there again.
+  static constexpr unsigned kMissedCopies = 3;
+  InFlight::Copies copies() const noexcept {
+    if (!both_ends()) return {};
+    if (single_copies < kMissedCopies) return {.count = 2};
+    return {.count = 1, .from = talking_port};
   }
   InFlight::Timeouts timeouts() const noexcept { return {settings.frame_timeout, settings.service_timeout}; }
   void give_up_overdue(Time now) noexcept;
   void dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept;
   void lost(const InFlight::Frame& frame, Time now) noexcept;
+  void missed_a_copy(const InFlight::Frame& frame) noexcept;
   void ring_is(bool open, std::size_t reached_from_primary) noexcept;
   void out_of_reach(std::string_view why, Time now) noexcept;
 
@@ -124,6 +127,7 @@ struct MasterState {
   bool ring_open = false;
   transports::LinkDetail ring_trouble;  // where it is open, in words
   unsigned single_copies = 0;           // cyclic frames in a row of which one copy was missed
+  std::size_t talking_port = 0;         // that the other copy came from
 
   // Service
   bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;

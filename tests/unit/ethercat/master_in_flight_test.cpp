@@ -19,7 +19,7 @@ class InFlightTest : public testing::Test {
   std::vector<std::byte> send(std::initializer_list<Request> requests, unsigned copies = 1) {
     EXPECT_TRUE(in_flight_.begin(InFlight::Use::kService, 0));
     for (const Request& request : requests) EXPECT_TRUE(in_flight_.add(request));
-    const Bytes frame = in_flight_.finish(copies, 0ms);
+    const Bytes frame = in_flight_.finish({.count = copies}, 0ms);
     return {frame.begin(), frame.end()};
   }
   // As a device changes it: ADP + 1 of A and B commands, working counter, data.
@@ -110,7 +110,7 @@ TEST_F(InFlightTest, WhatDoesNotFitLeavesTheFrameAsItWas) {
   EXPECT_TRUE(in_flight_.add(big));
   EXPECT_FALSE(in_flight_.add(big));
   EXPECT_TRUE(in_flight_.add(kStates));
-  DatagramWalk<const std::byte> walk(in_flight_.finish(1, 0ms));
+  DatagramWalk<const std::byte> walk(in_flight_.finish({}, 0ms));
   EXPECT_EQ(walk.next()->data().size(), 1400u);
   EXPECT_EQ(walk.next()->command(), Command::kBrd);
   EXPECT_FALSE(walk.next());

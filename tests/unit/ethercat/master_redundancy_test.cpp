@@ -103,6 +103,27 @@ TEST(MasterRedundancy, AnEndThatBringsNothingBackMakesImagesNoOlderThanTheyAre) 
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.master().input(i)[0], static_cast<std::byte>(cycle));
 }
 
+// No port is taken for deaf any longer than it is: half of a ring would be taken for all of it.
+TEST(MasterRedundancy, AnEndThatWasSilentIsWaitedForAgainAsSoonAsItSpeaks) {
+  Segment segment(ring_of(3));
+  ASSERT_TRUE(segment.start());
+  for (const std::size_t silent : {0, 3}) {
+    segment.chain().cut(silent);
+    segment.run(500ms);
+    EXPECT_TRUE(segment.master().ring_open());
+    segment.chain().heal(silent);
+    segment.run(2ms);
+    segment.chain().cut(1);
+    segment.run(500ms);
+    EXPECT_TRUE(segment.master().ring_open());
+    segment.chain().heal(1);
+    segment.run(2ms);
+  }
+  segment.run(100ms);
+  EXPECT_FALSE(segment.master().ring_open());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.master().counters(i).losses, 0u);
+}
+
 TEST(MasterRedundancy, StartedWithAnOpenRingTheRobotsBeforeTheBreakRunAndTheOthersWhenItIsWhole) {
   Segment segment(ring_of(3));
   segment.chain().cut(2);
