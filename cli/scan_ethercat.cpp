@@ -122,6 +122,9 @@ std::string remarks_on(const ScannedDevice& d) {
             (d.process_data_of_meca500 ? "; its process data is laid out as that of a Meca500" : "") + "\n";
   } else if (!d.identity->checksum_right) {
     text += at(d) + ": the checksum of its SII is wrong, the numbers from it may be wrong too\n";
+  } else if (d.identity->alias != d.alias) {
+    text += at(d) + ": its SII says alias " + std::to_string(d.identity->alias) + ", it uses " +
+            std::to_string(d.alias) + " until its power is switched off and on\n";
   }
   return text + counters_in_words(d);
 }

@@ -34,7 +34,7 @@ ScannedDevice coupler() {
   ScannedDevice d = robot();
   d.position = 1;
   d.station_address = 0;
-  d.alias = 7;
+  d.alias = d.identity->alias = 7;
   d.al_status = 0x14;
   d.al_code = 0x001B;
   d.ports[1] = {.exists = true, .loop_closed = true, .invalid_frames = 3, .rx_errors = 255, .lost_links = 1};
@@ -87,6 +87,13 @@ TEST(ChainText, NamesAChecksumThatIsWrongAndADeviceThatDoesNotAnswer) {
   EXPECT_THAT(text, HasSubstr("position 0: the checksum of its SII is wrong"));
   EXPECT_THAT(text, HasSubstr("1         does not answer"));
   EXPECT_THAT(text, HasSubstr("position 1 was counted and does not answer alone"));
+}
+
+TEST(ChainText, SaysThatAnAliasWasChangedAndIsNotInUseYet) {
+  ScannedDevice d = robot();
+  d.identity->alias = 777;
+  EXPECT_THAT(chain_text({"eth1", {d}, false, ""}),
+              HasSubstr("position 0: its SII says alias 777, it uses 0 until its power is switched off and on\n"));
 }
 
 TEST(ChainText, SaysWhoElseWorksOnTheCableAndHowItIsLaid) {
