@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/hex.hpp"
 #include "transports/ethercat/coe_server.hpp"
 #include "transports/ethercat/device.hpp"
 #include "transports/ethercat/object_dictionary.hpp"
@@ -18,29 +19,9 @@ namespace meca::ethercat::device_test {
 
 using image::Layout;
 
-inline std::vector<std::byte> bytes(std::string_view hex) {
-  std::vector<std::byte> out;
-  int half = -1;
-  for (const char c : hex) {
-    if (c == ' ') continue;
-    const auto digit = std::string_view("0123456789abcdef").find(static_cast<char>(c | 0x20));
-    if (digit == std::string_view::npos) throw std::invalid_argument("bad hex in a test");
-    if (half >= 0) out.push_back(static_cast<std::byte>(half << 4 | static_cast<int>(digit)));
-    half = half < 0 ? static_cast<int>(digit) : -1;
-  }
-  if (half >= 0) throw std::invalid_argument("half a byte in a test");
-  return out;
-}
+inline std::vector<std::byte> bytes(std::string_view hex) { return meca::test::from_hex(hex); }
 
-inline std::string hex(Bytes data) {
-  std::string out;
-  for (const std::byte b : data) {
-    if (!out.empty()) out += ' ';
-    out += "0123456789ABCDEF"[std::to_integer<unsigned>(b) >> 4];
-    out += "0123456789ABCDEF"[std::to_integer<unsigned>(b) & 15];
-  }
-  return out;
-}
+inline std::string hex(Bytes data) { return meca::test::to_hex(data, " "); }
 
 // A robot of the firmware that the ESI of this layout is of.
 inline DeviceSettings meca500(Layout layout = Layout::kFirmware10) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/hex.hpp"
 #include "transports/ethercat/esc.hpp"
 #include "transports/ethercat/sii.hpp"
 
@@ -17,27 +18,9 @@ namespace meca::ethercat::test {
 
 using namespace std::chrono_literals;
 
-// "00 10 80" or "001080"
-inline std::vector<std::byte> hex(std::string_view text) {
-  std::vector<std::byte> out;
-  std::string digits;
-  for (const char c : text)
-    if (c != ' ' && c != '\n') digits += c;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
-    out.push_back(static_cast<std::byte>(std::stoul(digits.substr(i, 2), nullptr, 16)));
-  return out;
-}
+inline std::vector<std::byte> hex(std::string_view text) { return meca::test::from_hex(text); }
 
-inline std::string text(Bytes bytes) {
-  std::string out;
-  for (const std::byte b : bytes) {
-    if (!out.empty()) out += ' ';
-    constexpr std::string_view kDigits = "0123456789ABCDEF";
-    out += kDigits[std::to_integer<unsigned>(b) >> 4];
-    out += kDigits[std::to_integer<unsigned>(b) & 15];
-  }
-  return out;
-}
+inline std::string text(Bytes bytes) { return meca::test::to_hex(bytes, " "); }
 
 inline std::vector<std::byte> little_endian(std::uint64_t value, unsigned size) {
   std::vector<std::byte> out;

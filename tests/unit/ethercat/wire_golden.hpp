@@ -9,25 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/hex.hpp"
+
 namespace meca::ethercat::golden {
 
-// "6F 00" -> bytes; blanks are passed over.
-inline std::vector<std::byte> from_hex(std::string_view text) {
-  std::vector<std::byte> bytes;
-  std::size_t digits = 0;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    const auto digit = std::string_view("0123456789ABCDEF").find(c);
-    if (digit == std::string_view::npos) throw std::invalid_argument("bad golden hex");
-    if (digits++ % 2 == 0) {
-      bytes.push_back(static_cast<std::byte>(digit << 4));
-    } else {
-      bytes.back() |= static_cast<std::byte>(digit);
-    }
-  }
-  if (digits % 2 != 0) throw std::invalid_argument("golden hex with half a byte");
-  return bytes;
-}
+using meca::test::from_hex;
 
 // ---- Frames, from the Ethernet header on
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/hex.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 
 namespace meca::ethernet_ip::adapter_test {
@@ -18,32 +19,9 @@ using namespace std::chrono_literals;
 // The device of the captures in the tests: firmware 11.3 at 172.28.1.3/24. The originator is at .2.
 inline constexpr std::uint32_t kDevice = 0xAC1C0103, kOriginator = 0xAC1C0102, kStranger = 0xAC1C0109;
 
-inline std::vector<std::byte> bytes(std::string_view hex) {
-  std::vector<std::byte> out;
-  int half = -1;
-  for (const char c : hex) {
-    if (c == ' ') continue;
-    const auto digit = std::string_view("0123456789abcdef").find(static_cast<char>(c | 0x20));
-    if (digit == std::string_view::npos) throw std::invalid_argument("bad hex in a test");
-    if (half < 0) {
-      half = static_cast<int>(digit);
-    } else {
-      out.push_back(static_cast<std::byte>(half << 4 | static_cast<int>(digit)));
-      half = -1;
-    }
-  }
-  if (half >= 0) throw std::invalid_argument("half a byte in a test");
-  return out;
-}
+inline std::vector<std::byte> bytes(std::string_view hex) { return meca::test::from_hex(hex); }
 
-inline std::string hex(Bytes data) {
-  std::string out;
-  for (const std::byte b : data) {
-    out += "0123456789abcdef"[std::to_integer<unsigned>(b) >> 4];
-    out += "0123456789abcdef"[std::to_integer<unsigned>(b) & 15];
-  }
-  return out;
-}
+inline std::string hex(Bytes data) { return meca::test::to_hex(data, "", "0123456789abcdef"); }
 
 template <class Write>
 std::vector<std::byte> written(Write write) {

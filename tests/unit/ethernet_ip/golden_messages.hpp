@@ -10,42 +10,19 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/hex.hpp"
 #include "transports/wire/reader.hpp"
 
 namespace meca::ethernet_ip::test {
 
-// "6F 00" -> bytes; blanks are passed over.
-inline std::vector<std::byte> from_hex(std::string_view text) {
-  std::vector<std::byte> bytes;
-  std::size_t digits = 0;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    const auto digit = std::string_view("0123456789ABCDEF").find(c);
-    if (digit == std::string_view::npos) throw std::invalid_argument("bad golden hex");
-    if (digits++ % 2 == 0)
-      bytes.push_back(static_cast<std::byte>(digit << 4));
-    else
-      bytes.back() |= static_cast<std::byte>(digit);
-  }
-  if (digits % 2 != 0) throw std::invalid_argument("golden hex with half a byte");
-  return bytes;
-}
+using meca::test::from_hex;
+using meca::test::to_hex;
 
 // The same, with the zeros at its end that were cut.
 inline std::vector<std::byte> from_hex(std::string_view text, std::size_t size) {
   auto bytes = from_hex(text);
   bytes.resize(size);
   return bytes;
-}
-
-inline std::string to_hex(wire::Bytes bytes) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string out;
-  for (const std::byte b : bytes) {
-    out += kDigits[std::to_integer<std::size_t>(b >> 4)];
-    out += kDigits[std::to_integer<std::size_t>(b & std::byte{15})];
-  }
-  return out;
 }
 
 namespace golden {

@@ -1,6 +1,7 @@
 // Helpers of the image tests: hex in, every format, reading the shared reference files.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "tests/hex.hpp"
 #include "transports/image/codec.hpp"
 #include "transports/image/image.hpp"
 
@@ -33,16 +35,10 @@ inline std::string name_of(Format format) {
 // "2A 00 ..." -> bytes; throws unless it is exactly kSize of them.
 template <std::size_t kSize>
 std::array<std::byte, kSize> from_hex(std::string_view text) {
+  const auto given = meca::test::from_hex(text);
+  if (given.size() != kSize) throw std::invalid_argument("golden hex of the wrong length");
   std::array<std::byte, kSize> bytes{};
-  std::size_t digits = 0;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    const auto digit = std::string_view("0123456789ABCDEF").find(c);
-    if (digit == std::string_view::npos || digits == 2 * kSize) throw std::invalid_argument("bad golden hex");
-    bytes[digits / 2] |= static_cast<std::byte>(digits % 2 == 0 ? digit << 4 : digit);
-    ++digits;
-  }
-  if (digits != 2 * kSize) throw std::invalid_argument("golden hex of the wrong length");
+  std::ranges::copy(given, bytes.begin());
   return bytes;
 }
 
