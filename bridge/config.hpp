@@ -70,9 +70,9 @@ struct ProfinetConfig {
 enum class TransportType : std::uint8_t { kBuiltin, kEthernetIp, kEthercat, kProfinet };
 
 struct ControlConfig {
-  bool enabled = true;  // false: this bridge only monitors this robot
-  std::chrono::nanoseconds lease = std::chrono::milliseconds(100);
-  std::chrono::nanoseconds velocity_lease = std::chrono::milliseconds(50);
+  bool enabled = true;                                              // false: this bridge only monitors this robot
+  std::chrono::nanoseconds lease = std::chrono::milliseconds(100);  // read from a file: at least three cycles
+  std::chrono::nanoseconds velocity_lease = std::chrono::milliseconds(50);  // the same
   bool allow_brakes = false;
   control::ClientRules clients;  // grace, policies and priorities
 };

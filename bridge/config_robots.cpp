@@ -168,14 +168,16 @@ void read_dynamic_data(const Section& robot, std::array<std::uint32_t, 4>& out) 
   }
 }
 
-void check_lease(const Section& robot, const Section& control, std::string_view key, nanoseconds lease,
-                 nanoseconds cycle) {
-  if (lease >= kCyclesPerLease * cycle) return;
-  const bool given = control.find(key) != nullptr;
-  control.report().error(given ? control.mark(key) : robot.mark("cycle"), control.path(key),
-                         to_string(lease) + (given ? "" : " (the default)") + " is less than " +
-                             std::to_string(kCyclesPerLease) + " cycles of " + to_string(cycle) + "; write " +
-                             to_string(kCyclesPerLease * cycle) + " or more");
+// A default is never a mistake: where the file says nothing, the lease grows with a long cycle.
+void read_lease(const Section& control, std::string_view key, std::optional<nanoseconds> cycle, nanoseconds& out) {
+  const nanoseconds least = kCyclesPerLease * cycle.value_or(0ns);
+  if (control.find(key) == nullptr) {
+    out = std::max(out, least);
+  } else if (control.duration(key, 1ms, 60s, out) && out < least) {
+    control.report().error(control.mark(key), control.path(key),
+                           to_string(out) + " is less than " + std::to_string(kCyclesPerLease) + " cycles of " +
+                               to_string(*cycle) + "; write " + to_string(least) + " or more");
+  }
 }
 
 bool read_loss_rule(const Section& section, control::LossRule& out) {
@@ -227,16 +229,14 @@ void read_clients(const Section& control, control::ClientRules& out) {
   }
 }
 
-void read_control(const Section& robot, const RobotConfig& config, bool check, ControlConfig& out) {
+// `cycle`: nothing when it is wrong itself.
+void read_control(const Section& robot, std::optional<nanoseconds> cycle, ControlConfig& out) {
   const Section control = robot.child("control", "robots[].control");
   control.flag("enabled", out.enabled);
   control.flag("allow_brakes", out.allow_brakes);
   read_clients(control, out.clients);
-  bool lease_right = control.duration("lease", 1ms, 60s, out.lease) || control.find("lease") == nullptr;
-  bool velocity_right =
-      control.duration("velocity_lease", 1ms, 60s, out.velocity_lease) || control.find("velocity_lease") == nullptr;
-  if (check && lease_right) check_lease(robot, control, "lease", out.lease, config.cycle);
-  if (check && velocity_right) check_lease(robot, control, "velocity_lease", out.velocity_lease, config.cycle);
+  read_lease(control, "lease", cycle, out.lease);
+  read_lease(control, "velocity_lease", cycle, out.velocity_lease);
 }
 
 nanoseconds shortest_cycle(const RobotConfig& config) {
@@ -261,7 +261,7 @@ Placed read_robot(const Section& robot, std::string path) {
   }
   read_firmware(robot, config.firmware);
   read_dynamic_data(robot, config.dynamic_data);
-  read_control(robot, config, cycle_right, config.control);
+  read_control(robot, cycle_right ? std::optional(config.cycle) : std::nullopt, config.control);
   return placed;
 }
 

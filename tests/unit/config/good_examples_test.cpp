@@ -271,7 +271,7 @@ robots:
     transport: {type: ethernet_ip, address: robot3.cell, tcp_port: 44819, rpi: 7.5ms, timeout_multiplier: 64,
                 multicast: true, key: exact, key_revision: "10.2", large_forward_open: true, fast: true}
     cycle: 5ms
-  - {name: "4", transport: {type: ethercat, interface: eth3, position: 63}, cycle: 20ms, control: {velocity_lease: 60ms}}
+  - {name: "4", transport: {type: ethercat, interface: eth3, position: 63}, cycle: 20ms}
   - {name: "5", transport: {type: ethercat, interface: eth1, alias: 65535}, cycle: 2ms}
 )",
                                            "all.yaml");
@@ -358,6 +358,28 @@ robots:
   EXPECT_EQ(c.robots[1].name, "2");
   EXPECT_EQ(c.robots[1].cycle, 10ms);
   EXPECT_EQ(c.robots[1].firmware, meca::transports::FirmwareVersion{});
+}
+
+TEST(ParseConfig, TakesALongCycleWithoutAWordAboutLeases) {
+  const ConfigResult result = parse_config(R"(robots:
+  - {name: shortest, transport: {type: ethercat, interface: eth1}}
+  - {name: ethercat, transport: {type: ethercat, interface: eth2}, cycle: 20ms}
+  - {name: ethernet_ip, transport: {type: ethernet_ip, address: robot3}, cycle: 50ms}
+  - {name: longest, transport: {type: builtin}, cycle: 1s}
+  - {name: one_key, transport: {type: builtin}, cycle: 50ms, control: {lease: 2s}}
+)",
+                                           "long.yaml");
+  ASSERT_EQ(letters(result.errors), "");
+  std::string leases;
+  for (const RobotConfig& robot : result.config->robots) {
+    leases += robot.name + " " + to_string(robot.control.lease) + " " + to_string(robot.control.velocity_lease) + "\n";
+  }
+  EXPECT_EQ(leases,
+            "shortest 100ms 50ms\n"
+            "ethercat 100ms 60ms\n"
+            "ethernet_ip 150ms 150ms\n"
+            "longest 3s 3s\n"
+            "one_key 2s 150ms\n");
 }
 
 TEST(ParseConfig, WarnsOfWhatRunsButNotAsMeant) {
