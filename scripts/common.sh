@@ -34,6 +34,7 @@ packages_for() {
       case $(debian_version) in 12*) echo libfastrtps-dev ;; *) echo libfastdds-dev ;; esac
       ;;
     ethercat) echo iproute2 ;; # virtual cables, for tests and bench as well
+    tshark) echo tshark ;; # for .ci/run alone
     clang) echo clang libclang-rt-dev ;;
     format) echo clang-format ;;
     debootstrap) echo debootstrap ;;
