@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "cli/bus_text.hpp"
 #include "cli/names.hpp"
 #include "transports/image/error_codes.hpp"
 
@@ -85,17 +86,6 @@ std::string counters_text(const meca500::BridgeStatus& s) {
   out << "cycle " << s.cycle_us() << " us; " << s.cycles() << " cycles, " << s.missed_cycles() << " missed, "
       << s.stale_cycles() << " stale, " << s.link_losses() << " link losses";
   return out.str();
-}
-
-// What the fieldbus counts, without what never happened: "sent_packets 812, lost_packets 2, period_mean 10000 us".
-std::string bus_text(const meca500::BridgeStatus& status) {
-  std::string text;
-  for (const auto& counter : status.transport_counters()) {
-    if (counter.value() == 0) continue;
-    text += (text.empty() ? "" : ", ") + str(counter.name()) + ' ' + std::to_string(counter.value());
-    if (const std::string unit = str(counter.unit()); !unit.empty()) text += ' ' + unit;
-  }
-  return text;
 }
 
 }  // namespace
@@ -233,8 +223,9 @@ std::string status_text(const std::string& robot, const RobotView& view, std::in
   if (view.bridge) {
     out << "  Link     " << with_detail(link_text(*view.bridge), str(view.bridge->link_detail())) << "; "
         << counters_text(*view.bridge) << '\n';
-    const std::string bus = bus_text(*view.bridge);
+    const std::string bus = bus_counts_text(*view.bridge), timing = bus_timing_text(*view.bridge);
     if (!bus.empty()) out << "  Bus      " << bus << '\n';
+    if (!timing.empty()) out << "  Timing   " << timing << '\n';
   }
   if (view.control) out << "  Control  " << control_text(*view.control, now_ns) << '\n';
   out << "  State    " << flags_text(view) << '\n';

@@ -1,6 +1,8 @@
 // A robot that is up, activated, homed and standing still, for the tests of what meca-ctl shows.
 #pragma once
 
+#include <cstdint>
+
 #include "cli/view.hpp"
 
 namespace meca::cli {
@@ -19,6 +21,14 @@ Sample with_header() {
   Sample sample;
   sample.robot("arm1");
   sample.header(good_header());
+  return sample;
+}
+
+inline meca500::TransportCounter counter(const char* name, std::int64_t value, const char* unit = "") {
+  meca500::TransportCounter sample;
+  sample.name(name);
+  sample.value(value);
+  sample.unit(unit);
   return sample;
 }
 
