@@ -71,10 +71,17 @@ bool Client::bridge_gone() {
   return bridge_cycles_ < before || commands_.matched() == 0;
 }
 
+bool Client::link_up() const {
+  const auto found = observer_.robots().find(robot_);
+  if (found == observer_.robots().end() || !found->second.bridge) return true;
+  return found->second.bridge->link() == meca500::LinkState::LINK_UP;
+}
+
 Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds timeout, const Progress& progress) {
   const meca500::Command command = make_command(plan, until);
   const auto start = Clock::now();
   auto last_sent = start - kResend;
+  bool link_was_up = true;
   Outcome outcome;
   while (Clock::now() - start < timeout) {
     if (interrupted) {
@@ -90,7 +97,7 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
       if (outcome.last && outcome.last->state() == receipt->state()) continue;  // the answer to a repetition
       accepted_ = accepted_ || receipt->state() != meca500::ReceiptState::REJECTED;
       outcome.last = *receipt;
-      progress(*receipt);
+      progress.receipt(*receipt);
       if (!is_enough(*receipt, plan, until)) continue;
       outcome.ended = Ended::kReached;
       return outcome;
@@ -98,6 +105,11 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
     if (bridge_gone() && outcome.last) {
       outcome.ended = Ended::kBridgeGone;
       return outcome;
+    }
+    const bool waits_for_robot = outcome.last && plan.kind == meca500::CommandKind::MOTION;
+    if (waits_for_robot && link_up() != link_was_up) {
+      link_was_up = !link_was_up;
+      progress.link(link_was_up);
     }
   }
   return outcome;
@@ -143,7 +155,7 @@ void Client::release() {
   const bool was_interrupted = interrupted.exchange(false);  // giving back is what an interrupted client does last
   CommandPlan plan;
   plan.kind = meca500::CommandKind::RELEASE_CONTROL;
-  execute(plan, WaitFor::kEnd, kReleaseTimeout, [](const auto&) {});
+  execute(plan, WaitFor::kEnd, kReleaseTimeout, {.receipt = [](const auto&) {}, .link = [](bool) {}});
   accepted_ = false;
   if (was_interrupted) interrupted = true;
 }

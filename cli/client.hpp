@@ -27,10 +27,14 @@ class Client {
  public:
   Client(Bus& bus, Observer& observer, std::string robot);
 
-  using Progress = std::function<void(const meca500::CommandReceipt&)>;
+  struct Progress {
+    std::function<void(const meca500::CommandReceipt&)> receipt;
+    std::function<void(bool up)> link;  // lost, or back, while a motion command that was taken has no end yet
+  };
 
   // Sends the command (again and again with the same id, until the first receipt: a bridge executes an id once) and
-  // follows its receipts. Motion goes on when this client is gone; a person who wants it to stop says so.
+  // follows its receipts, and the link of the robot. Motion goes on when this client is gone; a person who wants it to
+  // stop says so.
   Outcome execute(const CommandPlan& plan, WaitFor until, std::chrono::nanoseconds timeout, const Progress& progress);
 
   // Has the bridge accepted a command of ours, or does it say that we own the robot?
@@ -51,6 +55,7 @@ class Client {
  private:
   meca500::Command make_command(const CommandPlan& plan, WaitFor until);
   std::optional<meca500::CommandReceipt> next_receipt(std::uint64_t command_id);
+  bool link_up() const;  // as BridgeStatus has it; true when there is none
   // The bridge that answered has left without a word, or another one has its place, which knows nothing of our command.
   bool bridge_gone();
 

@@ -13,11 +13,20 @@ using namespace std::chrono_literals;
 constexpr auto kStreamPeriod = 10ms;  // five samples per default velocity lease of the bridge
 constexpr auto kSoon = 1s;            // what a running bridge answers at once
 
-Client::Progress printer(const Report& report, const std::string& title) {
-  return [&report, title](const meca500::CommandReceipt& receipt) {
-    report.object(to_json(receipt));
-    report.text(receipt_text(receipt, title));
-  };
+// The bridge ends what a lost link left open when the robot is back, or after 30 s (idl/control.idl, REASON_LINK_LOST).
+// Nobody shall sit before a silent terminal so long.
+std::string link_text(const std::string& command, bool up) {
+  return command + (up ? ": the link to the robot is back"
+                       : ": the link to the robot is lost; waiting up to 30 s to hear what became of the command");
+}
+
+Client::Progress printer(const Report& report, const std::string& robot, const std::string& title) {
+  return {.receipt =
+              [&report, title](const meca500::CommandReceipt& receipt) {
+                report.object(to_json(receipt));
+                report.text(receipt_text(receipt, title));
+              },
+          .link = [&report, command = robot + ": " + title](bool up) { report.text(link_text(command, up)); }};
 }
 
 ExitCode no_answer(const Outcome& outcome, const Invocation& call, const Report& report, const std::string& title) {
@@ -74,7 +83,8 @@ CommandPlan take_plan() {
 // Has control when it returns kDone.
 ExitCode take_control(Client& client, const Invocation& call, const Report& report) {
   const auto plan = take_plan();
-  const auto outcome = client.execute(plan, WaitFor::kEnd, answer_timeout(call), printer(report, plan.title));
+  const auto outcome =
+      client.execute(plan, WaitFor::kEnd, answer_timeout(call), printer(report, client.robot(), plan.title));
   return exit_code_of(outcome, call, report, plan.title);
 }
 
@@ -129,7 +139,8 @@ ExitCode move_for_a_while(Client& client, const Observer& observer, const Invoca
 ExitCode run_command(const Invocation& call, const Report& report) {
   return with_client(call, [&](Client& client, const Observer&) {
     const auto until = call.wait ? WaitFor::kEnd : WaitFor::kAcknowledged;
-    const auto outcome = client.execute(call.command, until, answer_timeout(call), printer(report, call.command.title));
+    const auto outcome =
+        client.execute(call.command, until, answer_timeout(call), printer(report, client.robot(), call.command.title));
     return exit_code_of(outcome, call, report, call.command.title);
   });
 }

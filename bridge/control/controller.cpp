@@ -3,7 +3,9 @@
 namespace meca::control {
 namespace {
 
-// How long what a lost link left open waits to be resolved by the robot's echo and checkpoints.
+// How long what a lost link left open waits to be resolved by the robot's echo and checkpoints. Nothing that the bridge
+// sees ends it earlier: a robot may keep its queue for as long as the cable is out, and finish it (inferred). People
+// and idl/control.idl are told this number.
 constexpr Time kResolvePatience = std::chrono::seconds(30);
 
 // Refusals that say "not you, not here, not now", as opposed to "not this command".

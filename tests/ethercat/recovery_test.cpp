@@ -35,6 +35,7 @@ TEST_F(Recovery, OfACutCableBeforeTheLastRobot) {
   make_ready("arm1");
   const auto mover = under_way("arm3");
   ASSERT_EQ(sim.say("cut", "arm3"), "ok: the cable before this robot is cut");
+  EXPECT_TRUE(mover->wait_for_output("arm3: move-joints: the link to the robot is lost; waiting up to 30 s"));
   EXPECT_EQ(mover->wait(), 1);
   EXPECT_THAT(mover->output(), HasSubstr("arm3: move-joints: aborted (LINK_LOST): MoveJoints aborted: the link to the "
                                          "robot was lost"));

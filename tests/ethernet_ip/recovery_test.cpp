@@ -66,6 +66,7 @@ TEST_F(Recovery, OfACutCable) {
   BridgeProgram bridge({robot("arm1", arm1_address())});
   const auto mover = under_way(bridge);
   ASSERT_EQ(arm1_.say("unplug"), "ok: the cable is out");
+  EXPECT_TRUE(mover->wait_for_output("arm1: move-joints: the link to the robot is lost; waiting up to 30 s"));
   EXPECT_EQ(mover->wait(), 1);
   EXPECT_THAT(mover->output(),
               HasSubstr("arm1: move-joints: aborted (LINK_LOST): MoveJoints aborted: the link to the robot was lost"));

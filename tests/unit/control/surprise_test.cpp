@@ -57,6 +57,10 @@ TEST(LostLink, does_not_wait_for_ever_for_the_truth) {
   const auto id = b.move(1);
   b.steps(2);
   b.link_up = false;
+  b.steps(30'000);  // as idl/control.idl says, in cycles of 1 ms
+  EXPECT_FALSE(b.terminal(id));
+  b.steps(10);
+  EXPECT_TRUE(b.terminal(id));
   EXPECT_OUTCOME(b.outcome(id), kAborted, Reason::kLinkLost);
 }
 
