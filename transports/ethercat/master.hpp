@@ -72,9 +72,9 @@ struct RobotCounters {
 
 // What stands in the chain, for people; position order.
 struct ChainDevice {
-  std::uint16_t station_address = 0, al_status = 0;  // AL status of robots only; 0: not read
-  std::uint32_t vendor = 0, product = 0;             // 0: not read yet
-  std::optional<std::size_t> robot;                  // index in MasterSettings::robots
+  std::uint16_t station_address = 0;
+  std::uint32_t vendor = 0, product = 0;  // 0: not read yet
+  std::optional<std::size_t> robot;       // index in MasterSettings::robots
 };
 
 struct MasterState;

@@ -114,7 +114,6 @@ void MasterState::bind(Robot& robot, Time now) noexcept {
   robot.trouble = why;
   robot.life = 0;
   robot.misses = robot.silent = 0;
-  robot.al_status = 0;
   robot.errors.clear = false;
   ++robot.generation;
   if (device == nullptr) return;
@@ -137,15 +136,11 @@ void MasterState::list_chain() noexcept {
   chain.clear();
   for (const ChainScan::Device& device : scan.devices()) {
     ChainDevice row{.station_address = device.address,
-                    .al_status = 0,
                     .vendor = device.identity.vendor,
                     .product = device.identity.product,
                     .robot = std::nullopt};
     const auto robot = std::ranges::find(robots, device.life, &Robot::life);
-    if (robot != robots.end()) {
-      row.robot = static_cast<std::size_t>(robot - robots.begin());
-      row.al_status = robot->al_status;
-    }
+    if (robot != robots.end()) row.robot = static_cast<std::size_t>(robot - robots.begin());
     chain.push_back(row);
   }
 }

@@ -129,10 +129,9 @@ void MasterState::al_status_reply(Robot& robot, std::uint16_t working_counter, B
   }
   robot.silent = 0;
   wire::Reader in(data);
-  robot.al_status = in.u16();
+  const std::uint16_t status = in.u16();
   in.skip(2);
-  robot.station.al_status(robot.al_status, in.u16(), now);
-  list_chain();
+  robot.station.al_status(status, in.u16(), now);
 }
 
 void MasterState::error_counters_reply(Robot& robot, Bytes data) noexcept {

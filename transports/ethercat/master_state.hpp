@@ -45,7 +45,6 @@ struct Robot {
   std::uint64_t inputs_cycle = 0, outputs_cycle = 0;  // separate datagrams that counted
   unsigned silent = 0;                                // questions for the AL status, in a row
   bool al_due = false, was_operational = false;
-  std::uint16_t al_status = 0;
   Time next_al{}, next_errors{}, next_difference{};
   ErrorCounterReading errors;
 };
