@@ -134,6 +134,17 @@ void plan_builtin(const Config& config, const Channels& channels, std::vector<Lo
   for (auto& [cycle, plan] : by_cycle) plans.push_back(std::move(plan));
 }
 
+// A bus with a loop of its own. `name`: of the protocol, for the sentence when it cannot be opened.
+void open_fieldbus(const std::string& name, LoopBus bus, LoopPlan& plan) {
+  try {
+    bus.transport->open(monotonic());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(name + ": " + error.what());
+  }
+  for (LoopPlan::Robot& robot : plan.robots) robot.counters = bus.transport->counters();
+  plan.buses.push_back(std::move(bus));
+}
+
 void plan_ethernet_ip(const Config& config, const Channels& channels, std::vector<LoopPlan>& plans) {
   LoopPlan plan;
   LoopBus bus;
@@ -148,13 +159,7 @@ void plan_ethernet_ip(const Config& config, const Channels& channels, std::vecto
   }
   if (options.empty()) return;
   bus.transport = ethernet_ip::make_transport(std::move(options), options_of(config));
-  try {
-    bus.transport->open(monotonic());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("EtherNet/IP: ") + error.what());
-  }
-  for (LoopPlan::Robot& robot : plan.robots) robot.counters = bus.transport->counters();
-  plan.buses.push_back(std::move(bus));
+  open_fieldbus("EtherNet/IP", std::move(bus), plan);
   plans.push_back(std::move(plan));
 }
 
@@ -182,13 +187,7 @@ void plan_ethercat(const Config& config, const EthercatSegmentConfig& segment, c
     plan.robots.push_back({i, {}});
   }
   bus.transport = ethercat::make_transport(std::move(places), options_of(segment, plan.cycle));
-  try {
-    bus.transport->open(monotonic());
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("EtherCAT: ") + error.what());
-  }
-  for (LoopPlan::Robot& robot : plan.robots) robot.counters = bus.transport->counters();
-  plan.buses.push_back(std::move(bus));
+  open_fieldbus("EtherCAT", std::move(bus), plan);
   plans.push_back(std::move(plan));
 }
 
