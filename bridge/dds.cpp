@@ -309,8 +309,8 @@ bool Participant::wait_for_data(std::chrono::nanoseconds timeout) {
   return vendor::ok(core.waitset.wait(active, duration(timeout)));
 }
 
-std::array<std::byte, 12> Participant::id() const noexcept {
-  std::array<std::byte, 12> prefix{};
+ParticipantId Participant::id() const noexcept {
+  ParticipantId prefix{};
   const auto& value = impl_->core->participant->guid().guidPrefix.value;
   for (std::size_t i = 0; i < prefix.size(); ++i) prefix[i] = std::byte{value[i]};
   return prefix;

@@ -37,10 +37,12 @@ struct Qos {
   std::chrono::nanoseconds lifespan{};  // writers: samples older than this are forgotten; 0 = never
 };
 
+using ParticipantId = std::array<std::byte, 12>;  // GUID prefix: unique per participant, and so per process
+
 struct SampleInfo {
-  bool valid_data = false;                  // false: the sample only says that an instance or its writers are gone
-  std::array<std::byte, 12> participant{};  // GUID prefix of the writer's participant
-  std::int64_t source_time_ns = 0;          // Unix time of write()
+  bool valid_data = false;          // false: the sample only says that an instance or its writers are gone
+  ParticipantId participant{};      // the writer's
+  std::int64_t source_time_ns = 0;  // Unix time of write()
 };
 
 class Participant;
@@ -102,7 +104,7 @@ class Participant {
   // at a time, which then takes from every reader of this participant: what is left there ends the next wait at once.
   bool wait_for_data(std::chrono::nanoseconds timeout);
 
-  std::array<std::byte, 12> id() const noexcept;  // GUID prefix
+  ParticipantId id() const noexcept;
 
  private:
   struct Impl;

@@ -53,28 +53,31 @@ meca500::Command Client::make_command(const CommandPlan& plan, WaitFor until) {
   return command;
 }
 
-std::optional<meca500::CommandReceipt> Client::next_receipt(std::uint64_t command_id) {
+const RobotView* Client::view() const {
+  const auto found = observer_.robots().find(robot_);
+  return found != observer_.robots().end() ? &found->second : nullptr;
+}
+
+std::optional<meca500::CommandReceipt> Client::next_receipt(std::uint64_t command_id, std::optional<Taker>& taker) {
   meca500::CommandReceipt receipt;
   dds::SampleInfo info;
   while (receipts_.take(receipt, info)) {
     const bool ours = info.valid_data && receipt.command_id() == command_id && receipt.robot().c_str() == robot_ &&
                       receipt.client().c_str() == bus_.client();
-    if (ours) return receipt;
+    if (!ours) continue;
+    if (!taker) taker = {info.participant, view() != nullptr ? view()->bridge_samples : 0};
+    return receipt;
   }
   return std::nullopt;
 }
 
-bool Client::bridge_gone() {
-  const auto found = observer_.robots().find(robot_);
-  if (found == observer_.robots().end() || !found->second.bridge) return false;
-  const std::uint64_t before = std::exchange(bridge_cycles_, found->second.bridge->cycles());
-  return bridge_cycles_ < before || commands_.matched() == 0;
+bool Client::is_gone(const Taker& bridge) const {
+  if (commands_.matched() == 0) return true;
+  return view() != nullptr && view()->bridge_samples > bridge.statuses && view()->bridge_writer != bridge.participant;
 }
 
 bool Client::link_up() const {
-  const auto found = observer_.robots().find(robot_);
-  if (found == observer_.robots().end() || !found->second.bridge) return true;
-  return found->second.bridge->link() == meca500::LinkState::LINK_UP;
+  return view() == nullptr || !view()->bridge || view()->bridge->link() == meca500::LinkState::LINK_UP;
 }
 
 Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds timeout, const Progress& progress) {
@@ -82,6 +85,7 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
   const auto start = Clock::now();
   auto last_sent = start - kResend;
   bool link_was_up = true;
+  std::optional<Taker> taker;
   Outcome outcome;
   while (Clock::now() - start < timeout) {
     if (interrupted) {
@@ -93,7 +97,7 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
       last_sent = Clock::now();
     }
     hold(kRenewal);
-    while (const auto receipt = next_receipt(command.command_id())) {
+    while (const auto receipt = next_receipt(command.command_id(), taker)) {
       if (outcome.last && outcome.last->state() == receipt->state()) continue;  // the answer to a repetition
       accepted_ = accepted_ || receipt->state() != meca500::ReceiptState::REJECTED;
       outcome.last = *receipt;
@@ -102,7 +106,7 @@ Outcome Client::execute(const CommandPlan& plan, WaitFor until, nanoseconds time
       outcome.ended = Ended::kReached;
       return outcome;
     }
-    if (bridge_gone() && outcome.last) {
+    if (taker && is_gone(*taker)) {
       outcome.ended = Ended::kBridgeGone;
       return outcome;
     }
@@ -139,8 +143,7 @@ void Client::send_velocity(const VelocityPlan& plan) {
 }
 
 const meca500::ControlStatus* Client::control() const {
-  const auto found = observer_.robots().find(robot_);
-  return found != observer_.robots().end() && found->second.control ? &*found->second.control : nullptr;
+  return view() != nullptr && view()->control ? &*view()->control : nullptr;
 }
 
 bool Client::owns() const {

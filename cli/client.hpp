@@ -54,10 +54,17 @@ class Client {
 
  private:
   meca500::Command make_command(const CommandPlan& plan, WaitFor until);
-  std::optional<meca500::CommandReceipt> next_receipt(std::uint64_t command_id);
-  bool link_up() const;  // as BridgeStatus has it; true when there is none
-  // The bridge that answered has left without a word, or another one has its place, which knows nothing of our command.
-  bool bridge_gone();
+  // The bridge that took the command, and how many BridgeStatus samples had come by then.
+  struct Taker {
+    dds::ParticipantId participant{};
+    std::uint64_t statuses = 0;
+  };
+  // Sets `taker`, when it is still empty, with the first receipt.
+  std::optional<meca500::CommandReceipt> next_receipt(std::uint64_t command_id, std::optional<Taker>& taker);
+  const RobotView* view() const;  // null: nothing has come yet
+  bool link_up() const;           // as BridgeStatus has it; true when there is none
+  // The bridge has left without a word, or another one, which knows nothing of our command, speaks for the robot.
+  bool is_gone(const Taker& bridge) const;
 
   Bus& bus_;
   Observer& observer_;
@@ -69,7 +76,6 @@ class Client {
   std::uint64_t next_id_;
   std::uint64_t lease_number_ = 0;
   std::uint64_t velocity_number_ = 0;
-  std::uint64_t bridge_cycles_ = 0;  // of the bridge, as it said last
   bool accepted_ = false;
   Clock::time_point last_renewal_{};
 };

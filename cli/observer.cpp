@@ -46,29 +46,30 @@ void Observer::take_all(dds::Reader<Sample>& reader, Keep keep) {
   Sample sample;
   dds::SampleInfo info;
   while (reader.take(sample, info)) {
-    if (info.valid_data) keep(robots_[sample.robot().c_str()], sample);
+    if (info.valid_data) keep(robots_[sample.robot().c_str()], sample, info);
   }
 }
 
 bool Observer::pump(std::chrono::nanoseconds timeout) {
   const bool arrived = bus_.wait(timeout);
   const auto now = Clock::now();
-  take_all(bridge_, [](RobotView& view, auto& sample) {
+  take_all(bridge_, [](RobotView& view, auto& sample, auto& info) {
     view.bridge = sample;
+    view.bridge_writer = info.participant;
     ++view.bridge_samples;
   });
-  take_all(control_, [](RobotView& view, auto& sample) { view.control = sample; });
-  take_all(robot_status_, [](RobotView& view, auto& sample) { view.robot_status = sample; });
-  take_all(motion_status_, [](RobotView& view, auto& sample) { view.motion_status = sample; });
-  take_all(joints_, [now](RobotView& view, auto& sample) {
+  take_all(control_, [](RobotView& view, auto& sample, auto&) { view.control = sample; });
+  take_all(robot_status_, [](RobotView& view, auto& sample, auto&) { view.robot_status = sample; });
+  take_all(motion_status_, [](RobotView& view, auto& sample, auto&) { view.motion_status = sample; });
+  take_all(joints_, [now](RobotView& view, auto& sample, auto&) {
     view.joints = sample;
     view.joints_arrived = now;
     ++view.joint_samples;
   });
-  take_all(pose_, [](RobotView& view, auto& sample) { view.pose = sample; });
-  take_all(configuration_, [](RobotView& view, auto& sample) { view.configuration = sample; });
-  take_all(safety_, [](RobotView& view, auto& sample) { view.safety = sample; });
-  take_all(dynamic_data_, [](RobotView& view, auto& sample) { view.dynamic_data[sample.type_id()] = sample; });
+  take_all(pose_, [](RobotView& view, auto& sample, auto&) { view.pose = sample; });
+  take_all(configuration_, [](RobotView& view, auto& sample, auto&) { view.configuration = sample; });
+  take_all(safety_, [](RobotView& view, auto& sample, auto&) { view.safety = sample; });
+  take_all(dynamic_data_, [](RobotView& view, auto& sample, auto&) { view.dynamic_data[sample.type_id()] = sample; });
   return arrived;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "bridge/dds.hpp"
 #include "idl/types.hpp"
 
 namespace meca::cli {
@@ -28,6 +29,7 @@ struct RobotView {
   Clock::time_point joints_arrived{};  // of the last TargetJointSet
   std::uint64_t joint_samples = 0;     // received so far
   std::uint64_t bridge_samples = 0;
+  dds::ParticipantId bridge_writer{};  // of the last BridgeStatus: a bridge that was started again is another one
 };
 
 using Views = std::map<std::string, RobotView>;  // by robot name

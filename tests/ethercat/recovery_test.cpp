@@ -3,9 +3,6 @@
 // together again by themselves, and that nothing moves by itself.
 #include <gmock/gmock.h>
 
-#include <chrono>
-#include <thread>
-
 #include "tests/ethercat/cell.hpp"
 
 namespace meca::test {
@@ -126,7 +123,6 @@ TEST_F(Recovery, OfRobotsThatAreAllReplaced) {
 TEST_F(Recovery, OfAKilledBridge) {
   start_robots(2);
   BridgeProcess& bridge = start_bridge(2);
-  std::this_thread::sleep_for(std::chrono::seconds(5));  // as over EtherNet/IP: older than the next one
   const auto mover = under_way("arm2");
   bridge.kill();
   bridge.start();

@@ -4,9 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "tests/ethernet_ip/programs.hpp"
 
 namespace meca::test {
@@ -118,9 +115,6 @@ TEST_F(Recovery, OfARobotThatIsReplacedByAnother) {
 
 TEST_F(Recovery, OfAKilledBridge) {
   BridgeProgram bridge({robot("arm1", arm1_address())});
-  // meca-ctl knows another bridge by its smaller count of cycles: this one has to be older than the next one is when a
-  // busy machine first hears of it.
-  std::this_thread::sleep_for(std::chrono::seconds(5));
   const auto mover = under_way(bridge);
   bridge.kill();
   bridge.start();
