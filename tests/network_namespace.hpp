@@ -6,10 +6,12 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "transports/net/file.hpp"
 
@@ -32,14 +34,23 @@ class NetworkNamespace {
 
   // ip(8) with these words.
   bool ip(const std::string& words) const { return std::system(("ip " + words + " 2>/dev/null").c_str()) == 0; }
-  // Two interfaces, one at each end of a cable, both up.
+  // Two interfaces, one at each end of a cable, both up and carrying: the kernel follows a link that came up after a
+  // moment, and drops what is sent before.
   void cable(const std::string& a, const std::string& b) const {
-    const bool laid =
-        ip("link add " + a + " type veth peer name " + b) && ip("link set " + a + " up") && ip("link set " + b + " up");
+    const bool laid = ip("link add " + a + " type veth peer name " + b) && ip("link set " + a + " up") &&
+                      ip("link set " + b + " up") && carries(a) && carries(b);
     if (!laid) throw std::runtime_error("no cable between " + a + " and " + b);
   }
 
  private:
+  bool carries(const std::string& interface) const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!ip("-o link show " + interface + " | grep -q 'state UP'")) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
   static bool enter_as_user() {
     const std::string uid = std::to_string(::geteuid()), gid = std::to_string(::getegid());
     if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;  // not in a process with threads
