@@ -25,7 +25,7 @@ TEST_P(OnFirmware, ThreeRobotsAreActivatedHomedAndMovedWithMecaCtl) {
                  std::abs(joints[4].template get<double>() - 20) < 1e-3;
         },
         robot));
-    EXPECT_EQ(bridge.status(robot)["bridge_status"]["ready"], true);
+    EXPECT_TRUE(bridge.until([](const auto& now) { return now["bridge_status"]["ready"] == true; }, robot));
     EXPECT_EQ(sim.say("violations", robot), "ok: the host broke no rule");
     EXPECT_EQ(losses(robot), 0);
   }

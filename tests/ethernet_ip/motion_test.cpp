@@ -27,7 +27,7 @@ TEST_P(OnFirmware, ARobotIsActivatedHomedAndMovedWithMecaCtl) {
     return std::abs(joints[0].template get<double>() + 10) < 1e-3 &&
            std::abs(joints[4].template get<double>() - 20) < 1e-3;
   }));
-  EXPECT_EQ(bridge.status()["bridge_status"]["ready"], true);
+  EXPECT_TRUE(bridge.until([](const auto& now) { return now["bridge_status"]["ready"] == true; }));
   EXPECT_EQ(arm1.say("violations"), "ok: the host broke no rule");
   EXPECT_EQ(bridge.stop(), 0) << bridge.log();
 }

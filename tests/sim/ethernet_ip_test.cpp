@@ -65,9 +65,9 @@ TEST(EndToEndOverEthernetIp, ARobotIsActivatedHomedAndMoved) {
             (std::vector{State::ACCEPTED, State::SENT, State::ACKNOWLEDGED, State::COMPLETED}));
   meca500::TargetJointSet sample;
   EXPECT_TRUE(arrives<meca500::TargetJointSet>(joints, "arm1", sample, [](const auto& s) {
-    return std::abs(s.joints()[0] - 10) < 1e-3 && std::abs(s.joints()[4] - 20) < 1e-3;
+    return std::abs(s.joints()[0] - 10) < 1e-3 && std::abs(s.joints()[4] - 20) < 1e-3 &&
+           s.header().quality() == meca500::Quality::GOOD;
   }));
-  EXPECT_EQ(sample.header().quality(), meca500::Quality::GOOD);
 }
 
 TEST(EndToEndOverEthernetIp, ALostRobotIsDisconnectedInEveryTopicAndComesBackToMonitoring) {
