@@ -148,7 +148,7 @@ bool Clocks::add_one(InFlight& frame, std::size_t item) noexcept {
 bool Clocks::add_drift(InFlight& frame) noexcept {
   const Purpose purpose{Purpose::Kind::kClocks, generation_, 0};
   if (clocks_.front().asked) return false;
-  for (unsigned i = 0; i < kDriftsPerFrame && drifts_ < kDriftsToBeginWith; ++i, ++drifts_) {
+  for (unsigned i = 0; i < std::min(kDriftsPerFrame, kDriftsToBeginWith - drifts_); ++i) {
     if (!frame.add({Command::kFrmw, address_of(clocks_.front().address, reg::kDcSystemTime), 8, {}, purpose})) break;
     clocks_.front().asked = true;
   }
@@ -160,7 +160,7 @@ void Clocks::answered(const Purpose& purpose, std::uint16_t working_counter, Byt
   Clock& clock = clocks_[purpose.of];
   clock.asked = false;
   if (step_ == Step::kDrift) {
-    if (drifts_ >= kDriftsToBeginWith) begin(Step::kReady);
+    if (++drifts_ == kDriftsToBeginWith) begin(Step::kReady);
     return;
   }
   if (working_counter == 0) {

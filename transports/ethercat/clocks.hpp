@@ -81,7 +81,7 @@ class Clocks {
   std::uint8_t generation_ = 0;
   std::vector<Clock> clocks_, before_;
   Time latched_{};
-  unsigned failures_ = 0, drifts_ = 0;
+  unsigned failures_ = 0, drifts_ = 0;  // drifts: those that came back
 };
 
 // Register 092Ch: magnitude in bits 0 to 30, bit 31: the local copy of the time is not less than what was received.

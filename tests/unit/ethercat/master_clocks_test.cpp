@@ -96,6 +96,23 @@ TEST(MasterClocks, ARobotWithoutAClockIsToldSo) {
   EXPECT_EQ(segment.master().trouble(0), "position 0 has no distributed clock; set dc: false");
 }
 
+TEST(MasterClocks, AreSetUpWhicheverReplyIsLost) {
+  std::size_t replies = 0;
+  {
+    Segment segment(with_clocks(1), drifting(1, 0));
+    segment.fate = [&](std::size_t n) {
+      replies = n + 1;
+      return Fate{};
+    };
+    ASSERT_TRUE(segment.start());
+  }
+  for (std::size_t lost = 0; lost < replies; ++lost) {
+    Segment segment(with_clocks(1), drifting(1, 0));
+    segment.fate = [&](std::size_t n) { return Fate{.lost = n == lost}; };
+    ASSERT_TRUE(segment.start()) << "reply " << lost << " of " << replies << ": " << segment.master().trouble(0);
+  }
+}
+
 TEST(MasterClocks, TheOwnerIsToldHowToMoveItsCycleUntilItStandsHalfACycleBeforeSync0) {
   Time cycle = 1ms;
   PhaseControl phase(cycle, cycle / 2);
