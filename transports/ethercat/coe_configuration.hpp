@@ -64,7 +64,6 @@ class CoeConfiguration final : public AccessMachine {
   bool may_refuse() const noexcept;
   void finish_step(Time now) noexcept;
   void begin_step(Step step, Time now) noexcept;
-  void safety_known(Time now) noexcept;
   void write_assignment(Time now) noexcept;
   void assignment_read(Time now) noexcept;
   void mapping_read(Time now) noexcept;
