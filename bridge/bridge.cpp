@@ -27,6 +27,12 @@ void print(const LogLine& line) {
   }
 }
 
+void log(const RealtimeAnswers& answers) {
+  for (const auto& answer : answers) {
+    spdlog::log(answer.granted ? spdlog::level::info : spdlog::level::warn, "{}", answer.text);
+  }
+}
+
 dds::ParticipantOptions participant_options(const DdsConfig& config) {
   return {.domain = config.domain,
           .name = config.participant_name,
@@ -100,10 +106,8 @@ Bridge::~Bridge() { stop(); }
 
 void Bridge::start() {
   if (impl_->running) return;
-  for (const auto& line : make_process_realtime(impl_->realtime)) spdlog::info("{}", line);
-  for (auto& loop : impl_->loops) {
-    for (const auto& line : loop->start()) spdlog::info("{}", line);
-  }
+  log(make_process_realtime(impl_->realtime));
+  for (auto& loop : impl_->loops) log(loop->start());
   impl_->publisher->start();
   impl_->intake->start();
   impl_->running = true;

@@ -115,7 +115,7 @@ struct LogConfig {
 struct RealtimeConfig {
   int priority = 0;  // SCHED_FIFO 1..99; 0 = leave it
   bool lock_memory = false;
-  std::vector<int> cpus;  // affinity of the cycle threads; empty = all
+  std::vector<int> cpus{};  // affinity of the cycle threads; empty = all
 };
 
 struct Config {

@@ -150,8 +150,8 @@ Loop::~Loop() {
   join();
 }
 
-std::vector<std::string> Loop::start() {
-  std::promise<std::vector<std::string>> ready;
+RealtimeAnswers Loop::start() {
+  std::promise<RealtimeAnswers> ready;
   auto got = ready.get_future();
   thread_ = std::thread([this, promise = std::move(ready)]() mutable { run(std::move(promise)); });
   return got.get();
@@ -187,7 +187,7 @@ void Loop::wait_for(Time deadline) noexcept {
   }
 }
 
-void Loop::run(std::promise<std::vector<std::string>> ready) {
+void Loop::run(std::promise<RealtimeAnswers> ready) {
   ready.set_value(make_thread_realtime(realtime_));
   Pacer pacer(cycle_, monotonic() + cycle_);
   using Ending = BusGroup::Ending;

@@ -81,7 +81,7 @@ class Loop {
   Loop& operator=(const Loop&) = delete;
 
   // Starts the thread; returns when it has asked for its real-time properties, with what it got.
-  std::vector<std::string> start();
+  RealtimeAnswers start();
 
   // Asks for the stop image, then time to clear the queues and to end the commands, at most 1.5 s, then the transports'
   // good-bye. Does not wait: several loops stop at once.
@@ -91,7 +91,7 @@ class Loop {
   PaceFacts pace() const noexcept;  // from any thread
 
  private:
-  void run(std::promise<std::vector<std::string>> ready);
+  void run(std::promise<RealtimeAnswers> ready);
   void wait_for(Time deadline) noexcept;
   void share_pace(const PaceFacts& facts) noexcept;
 

@@ -1,5 +1,5 @@
 // SCHED_FIFO, locked memory, CPU affinity: asks for what the configuration wants, checks, and says what it got.
-// A refusal is a sentence with a remedy, never a reason not to run.
+// A refusal is a sentence with a remedy, worth a warning, never a reason not to run.
 #pragma once
 
 #include <string>
@@ -9,11 +9,17 @@
 
 namespace meca::bridge {
 
-// Once, before the threads start: locks the memory of the process.
-std::vector<std::string> make_process_realtime(const RealtimeConfig& config);
+// One thing that was asked for.
+struct RealtimeAnswer {
+  bool granted = false;
+  std::string text;
+};
+using RealtimeAnswers = std::vector<RealtimeAnswer>;  // empty when nothing was asked for
 
-// For the calling thread: priority, CPUs, and timers without slack. Lines are worth a warning when something was
-// refused; empty when nothing was asked for.
-std::vector<std::string> make_thread_realtime(const RealtimeConfig& config);
+// Once, before the threads start: locks the memory of the process.
+RealtimeAnswers make_process_realtime(const RealtimeConfig& config);
+
+// For the calling thread: priority, CPUs, and timers without slack.
+RealtimeAnswers make_thread_realtime(const RealtimeConfig& config);
 
 }  // namespace meca::bridge
