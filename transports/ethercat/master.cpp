@@ -11,6 +11,8 @@ namespace {
 
 using Phase = Station::Phase;
 constexpr std::string_view kLookedThrough = "the chain is being looked through";
+constexpr std::string_view kNotLookedThrough =
+    "the ring is open before the first device, and robots are looked for from there; check the cable there";
 constexpr Time kLeastSilence = std::chrono::milliseconds(100);
 constexpr unsigned kMissesToSay = 10, kUnequalPauses = 4;
 
@@ -75,6 +77,7 @@ void MasterState::missed_a_copy(const InFlight::Frame& frame) noexcept {
 
 void MasterState::ring_is(bool open, std::size_t reached_from_primary) noexcept {
   ring_open = open;
+  ring_open_at_first = open && reached_from_primary == 0;
   if (!open) return;
   constexpr const char* kMeaning = "the next cut takes robots away; check the cable there";
   if (reached_from_primary == 0) {
@@ -226,6 +229,7 @@ const Station& Master::station(std::size_t robot) const noexcept { return state_
 
 std::string_view Master::trouble(std::size_t index) const noexcept {
   const Robot& robot = state_->robots[index];
+  if (state_->ring_open_at_first && robot.trouble.view() == kLookedThrough) return kNotLookedThrough;
   if (!robot.trouble.empty()) return robot.trouble;
   if (!robot.station.operational()) return robot.station.trouble();
   if (robot.misses >= kMissesToSay) return state_->why_not_counted(robot);

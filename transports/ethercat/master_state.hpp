@@ -123,10 +123,10 @@ struct MasterState {
   std::uint16_t count = 0, states = 0;  // of the last cycle that came back
   unsigned count_stands = 0;            // cycles that it has been the same
   std::optional<std::uint16_t> scanned_count;
-  bool ring_open = false;
-  transports::LinkDetail ring_trouble;  // where it is open, in words
-  unsigned single_copies = 0;           // cyclic frames in a row of which one copy was missed
-  std::size_t talking_port = 0;         // that the other copy came from
+  bool ring_open = false, ring_open_at_first = false;  // at_first: before the first device
+  transports::LinkDetail ring_trouble;                 // where it is open, in words
+  unsigned single_copies = 0;                          // cyclic frames in a row of which one copy was missed
+  std::size_t talking_port = 0;                        // that the other copy came from
 
   // Service
   bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;

@@ -93,6 +93,55 @@ TEST(MasterFaults, FramesHeldUpBeyondTheTimeoutAreLostAndThenUnexpected) {
   EXPECT_EQ(segment.master().counters().unexpected_frames, 1u);
 }
 
+TEST(MasterFaults, AnImageThatWasOvertakenByANewerOneIsNotTaken) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  segment.run(20ms);
+  std::uint8_t cycle = 0;
+  segment.every_cycle = [&cycle](Segment& of) {
+    image::InputBytes input{};
+    input[0] = static_cast<std::byte>(++cycle);
+    of.device(0).set_input(input);
+  };
+  segment.run(2ms);
+  segment.fate = [once = true](std::size_t) mutable {
+    return Fate{.held_up = std::exchange(once, false) ? 2500us : Time{}};
+  };
+  for (int i = 0; i < 6; ++i) {
+    const std::byte before = segment.master().input(0)[0];
+    segment.run(1ms);
+    EXPECT_GE(segment.master().input(0)[0], before);
+  }
+  EXPECT_EQ(segment.master().counters().late_frames, 1u);
+  EXPECT_EQ(segment.master().counters().unexpected_frames, 0u);
+}
+
+TEST(MasterFaults, AnImageThatArrivesAfterItsRobotWasLostIsNoFreshOne) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  segment.fate = [](std::size_t) { return Fate{.held_up = 5ms}; };
+  segment.run(2ms);
+  segment.set_link(Master::Port::kPrimary, false);
+  segment.master().take_fresh(0);
+  const auto received = segment.master().counters().received_frames;
+  segment.run(10ms);
+  EXPECT_GT(segment.master().counters().received_frames, received);
+  EXPECT_FALSE(segment.master().take_fresh(0));
+}
+
+TEST(MasterFaults, ACableThatIsOutForOneCycleCostsOneImageAndNoScan) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.run(10ms);
+  segment.chain().cut(2);
+  segment.run(1ms);
+  segment.chain().heal(2);
+  segment.run(500ms);
+  EXPECT_EQ(segment.master().counters().scans, 1u);
+  EXPECT_EQ(segment.master().counters(2).losses, 0u);
+  EXPECT_EQ(segment.master().counters(2).working_counter_misses, 1u);
+}
+
 TEST(MasterFaults, ForeignAndBrokenFramesChangeNothing) {
   Segment segment(settings_for(1));
   ASSERT_TRUE(segment.start());

@@ -139,6 +139,22 @@ TEST(MasterRedundancy, StartedWithAnOpenRingTheRobotsBeforeTheBreakRunAndTheOthe
   EXPECT_TRUE(segment.all_operational()) << segment.master().trouble(2);
 }
 
+// It was once "being looked through" for as long as that cable was out.
+TEST(MasterRedundancy, StartedWithoutItsFirstCableItSaysThatRobotsAreLookedForFromThere) {
+  for (const bool told : {true, false}) {
+    Segment segment(ring_of(3));
+    segment.chain().cut(0);
+    if (told) segment.set_link(Port::kPrimary, false);
+    segment.run(2s);
+    EXPECT_EQ(segment.master().trouble(1),
+              "the ring is open before the first device, and robots are looked for from there; check the cable there");
+    segment.chain().heal(0);
+    segment.set_link(Port::kPrimary, true);
+    ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+    EXPECT_EQ(segment.master().trouble(1), "");
+  }
+}
+
 TEST(MasterRedundancy, ARobotPowerCycledBeforeTheBreakOfAnOpenRingComesBack) {
   Segment segment(ring_of(3));
   ASSERT_TRUE(segment.start());
