@@ -1,6 +1,7 @@
 #include "transports/ethercat/clocks.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "transports/ethercat/registers.hpp"
 
@@ -48,9 +49,18 @@ void PhaseControl::seen(std::uint64_t reference) noexcept {
   std::int64_t late = (phase - target_.count()) % cycle;
   if (late > cycle / 2) late -= cycle;
   if (late < -cycle / 2) late += cycle;
-  const Time most = cycle_ / 100;
   integral_ = std::clamp(integral_ + Time(late > 0 ? 1 : late < 0 ? -1 : 0), Time(-20 * 1000), Time(20 * 1000));
-  correction_ = std::clamp(-Time(late / 100) - integral_ / 20, -most, most);
+  correct(Time(late));
+  seen_ = true;
+}
+
+void PhaseControl::next_cycle() noexcept {
+  if (!std::exchange(seen_, false)) correct({});
+}
+
+void PhaseControl::correct(Time late) noexcept {
+  const Time most = cycle_ / 100;
+  correction_ = std::clamp(-late / 100 - integral_ / 20, -most, most);
 }
 
 Clocks::Clocks(std::uint64_t epoch) : epoch_(epoch) {

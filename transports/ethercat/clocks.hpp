@@ -22,11 +22,17 @@ class PhaseControl {
   PhaseControl(Time cycle, Time target) noexcept : cycle_(cycle), target_(target) {}
   // The reference clock's time (ns since 2000-01-01) as this cycle's frame passed it.
   void seen(std::uint64_t reference) noexcept;
+  // To be called once a cycle. Where nothing was seen since the last one only the difference in speed is corrected: the
+  // way to the target is not known then, and the same step again and again would lead past it.
+  void next_cycle() noexcept;
   Time correction() const noexcept { return correction_; }
   void reset() noexcept { integral_ = correction_ = {}; }
 
  private:
+  void correct(Time late) noexcept;
+
   Time cycle_, target_, integral_{}, correction_{};
+  bool seen_ = false;
 };
 
 class Clocks {

@@ -11,7 +11,6 @@ namespace {
 constexpr unsigned kBelieved = 2;
 constexpr unsigned kMissesToAsk = 2;
 constexpr std::uint16_t kReadOnly = 1;  // of a command that reads and writes
-// An answer of the reference's clock is of use for the others once all are set.
 constexpr std::uint16_t kTimeSize = 8;
 
 }  // namespace
@@ -22,6 +21,7 @@ void MasterState::begin_cycle() noexcept {
   cyclic_due = any_port();
   chain_state_added = false;
   next_robot = 0;
+  phase.next_cycle();
   for (Robot& robot : robots) {
     const bool operational = robot.station.operational();
     if (robot.was_operational && !operational && !closing) ++robot.counters.losses;
@@ -147,10 +147,10 @@ void MasterState::chain_state(std::uint16_t devices, std::uint16_t or_of_states)
 }
 
 void MasterState::reference_time(Bytes data, Time now) noexcept {
-  if (!clocks.ready()) return;
   wire::Reader in(data);
   const std::uint64_t time = in.u64();
   phase.seen(time);
+  if (!clocks.ready()) return;  // robots start SYNC0 once all clocks are set
   for (Robot& robot : robots)
     if (robot.life != 0) robot.station.dc_ready(time, now);
 }

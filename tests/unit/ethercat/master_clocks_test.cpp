@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/unit/ethercat/master_segment.hpp"
@@ -126,6 +127,50 @@ TEST(MasterClocks, TheOwnerIsToldHowToMoveItsCycleUntilItStandsHalfACycleBeforeS
     reference += step * 1.00001;
   }
   EXPECT_LT(std::abs(std::fmod(reference, 1e6) - 500'000), 2'000);
+}
+
+TEST(MasterClocks, WithoutTheReferenceTheOwnerIsToldTheDifferenceInSpeedOnly) {
+  PhaseControl phase(1ms, 500us);
+  for (int i = 0; i < 2'000; ++i) {  // 300 us late, for so long that the clocks seem to run apart
+    phase.next_cycle();
+    phase.seen(800'000);
+  }
+  phase.next_cycle();
+  EXPECT_EQ(phase.correction(), -3'000ns - 100ns) << "a hundredth of the way, a twentieth of a nanosecond a cycle";
+  for (int i = 0; i < 10; ++i) {
+    phase.next_cycle();
+    EXPECT_EQ(phase.correction(), -100ns);
+  }
+}
+
+// It once stood still then: the same step in each of some hundred cycles.
+TEST(MasterClocks, TheOwnersCycleIsLedWhileTheClockOfARobotThatComesBackIsSet) {
+  Segment segment(with_clocks(3), drifting(3, 50));
+  ASSERT_TRUE(segment.start());
+  segment.device(1).power_cycle(segment.now());
+  Time last{};
+  int same = 0, longest = 0;
+  segment.every_cycle = [&](Segment& of) {
+    same = of.master().dc_phase_correction() == last ? same + 1 : 0;
+    last = of.master().dc_phase_correction();
+    longest = std::max(longest, same);
+  };
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  EXPECT_LT(longest, 50);
+}
+
+// The cables of the simulated chain take 1 us each.
+TEST(MasterClocks, EveryRobotIsToldHowMuchLaterItHearsTheReference) {
+  Segment segment(with_clocks(4), drifting(4, 0));
+  ASSERT_TRUE(segment.start());
+  const auto delay = [&](std::size_t robot) {
+    unsigned value = 0;
+    for (unsigned i = 4; i-- > 0;)
+      value = value << 8 | segment.device(robot).esc().peek(static_cast<std::uint16_t>(reg::kDcDelay + i));
+    return value;
+  };
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(delay(i), 1000u * i) << i;
 }
 
 TEST(MasterClocks, TheDifferenceRegisterIsSignAndMagnitude) {
