@@ -77,6 +77,22 @@ TEST(MasterClocks, ARobotThatComesBackIsSetToTheTimeOfTheOthers) {
   EXPECT_EQ(segment.master().counters(2).losses, 0u);
 }
 
+TEST(MasterClocks, OnlyTheClockOfTheRobotThatComesBackIsSet) {
+  Segment segment(with_clocks(3), drifting(3, 5));
+  ASSERT_TRUE(segment.start());
+  segment.device(1).power_cycle(segment.now());
+  int set = 0;
+  segment.sent = [&](Bytes frame, Chain::Side) {
+    DatagramWalk<const std::byte> walk(frame);
+    while (const auto datagram = walk.next())
+      set += datagram->command() == Command::kFpwr &&
+             (datagram->ado() == reg::kDcOffset || datagram->ado() == reg::kDcSpeedStart);
+  };
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  EXPECT_EQ(set, 2) << "offset and speed of one";
+}
+
 TEST(MasterClocks, WhenTheReferenceIsPowerCycledTheOthersKeepTheTime) {
   Segment segment(with_clocks(3), drifting(3, 0));
   ASSERT_TRUE(segment.start());

@@ -152,6 +152,19 @@ TEST(MasterStart, AnAliasWithAWrongChecksumIsNotBelieved) {
   EXPECT_TRUE(by_position.start()) << by_position.master().trouble(0);
 }
 
+TEST(MasterStart, ARobotIsNotTwoInTheConfiguration) {
+  std::vector<DeviceSettings> devices(2);
+  devices[1].alias = 5;
+  MasterSettings settings;
+  settings.robots = {{0, 5}, {1, std::nullopt}};
+  Segment segment(settings, devices);
+  segment.run(2s);
+  EXPECT_TRUE(segment.master().station(0).operational()) << segment.master().trouble(0);
+  EXPECT_FALSE(segment.master().station(1).operational());
+  EXPECT_EQ(segment.master().trouble(1),
+            "position 1 is the robot with alias 5, which is another one in the configuration");
+}
+
 // It was once "at position 0", wherever it stood.
 TEST(MasterStart, ARobotWithAnAliasIsCalledByItInEverySentence) {
   std::vector<DeviceSettings> devices(2);
@@ -226,6 +239,26 @@ TEST(MasterStart, RobotsThatChangeTheirPlacesAreTakenForWhoStandsThere) {
   EXPECT_EQ(segment.master().input(1)[0], std::byte{0x12});
   EXPECT_EQ(segment.master().input(2)[0], std::byte{0x11});
   EXPECT_EQ(segment.master().counters(0).losses, 0u);
+}
+
+// As another master left it, perhaps: the address of a neighbour.
+TEST(MasterStart, ARobotThatIsExchangedForOneWithTheAddressOfItsNeighbourDoesNotDisturbThatOne) {
+  Segment segment(settings_for(3), std::vector<DeviceSettings>(4));
+  ASSERT_TRUE(segment.start());
+  std::array<std::byte, kLongestFrame> buffer;
+  FrameWriter writer(buffer, MacAddress{});
+  std::ranges::copy(std::array{std::byte{0x03}, std::byte{0x10}},
+                    writer.add(Command::kApwr, 0, address_of(0, reg::kStationAddress), 2).begin());
+  const std::size_t size = writer.finish().size();
+  Chain({&segment.device(3)}).process(Chain::Side::kPrimary, std::span(buffer).first(size), segment.now());
+  ASSERT_EQ(segment.device(3).esc().station_address(), segment.device(2).esc().station_address());
+  segment.chain() = Chain({&segment.device(0), &segment.device(3), &segment.device(2)});
+  segment.run(50ms);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(1);
+  EXPECT_EQ(segment.device(2).esc().station_address(), 0x1003);
+  EXPECT_NE(segment.device(3).esc().station_address(), 0x1003);
+  EXPECT_EQ(segment.master().counters(0).losses, 0u);
+  EXPECT_EQ(segment.master().counters(2).losses, 0u);
 }
 
 TEST(MasterStart, RobotsWithAliasesKeepTheirNamesWhenTheyChangeTheirPlaces) {
