@@ -129,6 +129,8 @@ TEST(DeviceClock, IsASyncErrorWhenTheMasterStops) {
   EXPECT_EQ(robot.al(), "SAFEOP+001A");
   EXPECT_EQ(robot.device.counters().sync_errors, 1u);
   EXPECT_EQ(robot.device.counters().watchdog_expiries, 0u);
+  EXPECT_EQ(robot.sdo("00 20 40 32 1C 20 00 00 00 00"), "00 30 4F 32 1C 20 01 00 00 00") << "1C32h:20, sync error";
+  EXPECT_EQ(robot.sdo("00 20 40 32 1C 0B 00 00 00 00"), "00 30 4B 32 1C 0B 05 00 00 00") << "1C32h:0B, missed";
 }
 
 TEST(DeviceClock, IsASyncErrorWhenSync0IsSwitchedOff) {

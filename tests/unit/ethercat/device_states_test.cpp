@@ -156,6 +156,14 @@ TEST(DeviceStates, NeedOutputsForOp) {
   EXPECT_EQ(robot.device.counters().strict, 1u);
 }
 
+TEST(DeviceStates, DoNotTakeOutputsOfAnotherTimeForNewOnes) {
+  DeviceRig robot;
+  robot.to_safeop();
+  robot.cycle();
+  robot.run(110ms);  // the watchdog runs out
+  EXPECT_EQ(robot.ask(0x08, 110ms), "SAFEOP+001B");
+}
+
 TEST(DeviceStates, WaitALittleForOutputsOnTheWayToOp) {
   DeviceRig robot;
   robot.to_safeop();

@@ -53,6 +53,17 @@ TEST(MasterClocks, TheReferenceClockSaysTheMastersTime) {
   EXPECT_LT(std::llabs(time - segment.now().count()), 1'000'000);
 }
 
+TEST(MasterClocks, FramesAreLedToHalfACycleBeforeSync0) {
+  for (const auto& [shift, step] : {std::pair{0us, 1000}, {200us, 3000}, {700us, -2000}}) {
+    MasterSettings settings = with_clocks(1);
+    settings.dc_epoch = kEpoch + 400'000;  // so far behind the multiples of the cycle do frames pass
+    settings.dc_shift = shift;
+    Segment segment(settings, drifting(1, 0));
+    ASSERT_TRUE(segment.start());
+    EXPECT_NEAR(static_cast<double>(segment.master().dc_phase_correction().count()), step, 50) << shift.count();
+  }
+}
+
 TEST(MasterClocks, ClocksThatDriftStayTogether) {
   Segment segment(with_clocks(3), drifting(3, 20));
   ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
@@ -62,6 +73,19 @@ TEST(MasterClocks, ClocksThatDriftStayTogether) {
     EXPECT_LT(apart(segment, 0, i), 5'000) << i;
     EXPECT_LT(std::llabs(segment.master().counters(i).dc_difference_ns), 5'000) << i;
   }
+}
+
+// Faster and slower than the clock's own loop can correct.
+TEST(MasterClocks, ADifferenceThatStaysIsShownWithItsSign) {
+  std::vector<DeviceSettings> devices(3);
+  devices[1].esc.clock_ppm = 1000;
+  devices[2].esc.clock_ppm = -1000;
+  Segment segment(with_clocks(3), devices);
+  ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
+  segment.run(1s);
+  EXPECT_EQ(segment.master().counters(0).dc_difference_ns, 0) << "of the reference";
+  EXPECT_GT(segment.master().counters(1).dc_difference_ns, 100);
+  EXPECT_LT(segment.master().counters(2).dc_difference_ns, -100);
 }
 
 TEST(MasterClocks, ARobotThatComesBackIsSetToTheTimeOfTheOthers) {

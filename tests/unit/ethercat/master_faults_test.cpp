@@ -215,6 +215,20 @@ TEST(MasterFaults, AnAlErrorOfOneRobotIsAcknowledgedAndItClimbsAgain) {
   EXPECT_EQ(segment.master().counters().scans, 1u);
 }
 
+// The OR of all states and the working counter are the same before and after: it is asked ten times a second.
+TEST(MasterFaults, ARobotThatLeavesOpUnderTheErrorOfAnotherIsSeen) {
+  Segment segment(settings_for(3));
+  ASSERT_TRUE(segment.start());
+  segment.device(0).faults().refuse_state = 0x001B;
+  segment.device(0).raise_al_error(0x001B, segment.now());
+  ASSERT_TRUE(segment.run(1s, [&] { return segment.master().station(0).phase() == Station::Phase::kPausing; }));
+  segment.run(10ms);
+  segment.device(1).esc().set_al_status(static_cast<std::uint16_t>(AlState::kSafeop), 0);
+  segment.run(150ms);
+  EXPECT_EQ(segment.master().counters(1).losses, 1u);
+  EXPECT_EQ(segment.master().counters(2).losses, 0u);
+}
+
 TEST(MasterFaults, AfterAPauseOfTheMasterTheWatchdogHasTrippedAndAllComeBack) {
   Segment segment(settings_for(3));
   ASSERT_TRUE(segment.start());

@@ -54,6 +54,19 @@ TEST(MasterStart, OneFrameACycleCarriesFourRobotsAndFiveTakeTwo) {
   }
 }
 
+TEST(MasterStart, ManyRobotsStartTogetherAndNotOneAfterTheOther) {
+  Segment segment(settings_for(32));
+  std::array<Time, 32> up{};
+  segment.every_cycle = [&](Segment& of) {
+    for (std::size_t i = 0; i < up.size(); ++i)
+      if (up[i] == Time{} && of.master().station(i).operational()) up[i] = of.now();
+  };
+  ASSERT_TRUE(segment.start());
+  segment.run(1ms);
+  const auto [first, last] = std::ranges::minmax(up);
+  EXPECT_LT(last, first * 2);
+}
+
 TEST(MasterStart, SendsZerosBeforeTheFirstOutputs) {
   Segment segment(settings_for(1));
   ASSERT_TRUE(segment.start());

@@ -70,6 +70,21 @@ TEST(StationClimb, GivesTheSiiToTheRobotBeforePreop) {
   EXPECT_EQ(rig.device.memory(reg::kSiiOwner, 1), from_hex("01"));
 }
 
+TEST(StationClimb, ThrowsAwayWhatLiesInTheMailboxFromBefore) {
+  StationRig rig;
+  rig.find();
+  ASSERT_TRUE(rig.run_until(Phase::kPreop));
+  SdoMessage old;
+  old.kind = SdoMessage::Kind::kUploadResponse;
+  old.address = {0x1008, 0};  // what is asked for first
+  const ByteVector name = text("SomebodyElse");
+  old.data = name;
+  old.size = static_cast<std::uint32_t>(name.size());
+  rig.device.post_sdo(old);
+  ASSERT_TRUE(rig.run_until(Phase::kOperational)) << rig.trouble();
+  EXPECT_EQ(rig.station.device_name(), "Meca500");
+}
+
 TEST(StationClimb, DoesWithoutClocksWhereADeviceHasNone) {
   StationRig rig;
   rig.device.missing = {reg::kDcCyclicUnit};
