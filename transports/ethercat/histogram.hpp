@@ -26,6 +26,11 @@ class Histogram {
     max_ = std::max(max_, us);
     if (now >= window_end_) end_window();
   }
+  // For what may cease to be measured, to be called all the time: facts do not outlive their second by more than one.
+  void pass(Time now) noexcept {
+    if (count_ > 0 && now >= window_end_) end_window();
+    if (count_ == 0 && now >= window_end_ + kWindow) facts_ = {};
+  }
   const Facts& facts() const noexcept { return facts_; }
 
  private:

@@ -134,6 +134,7 @@ Master& Master::operator=(Master&&) noexcept = default;
 
 void Master::begin_cycle(Time now) noexcept {
   state_->give_up_overdue(now);
+  state_->round_trip.pass(now);
   state_->begin_cycle();
 }
 

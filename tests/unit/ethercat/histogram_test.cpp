@@ -71,6 +71,19 @@ TEST(Histogram, ForgetsASecondWhenTheNextIsOver) {
   EXPECT_EQ(histogram.facts().p999, 20);
 }
 
+TEST(Histogram, ForgetsWhatIsNotMeasuredAnyMore) {
+  Histogram histogram;
+  histogram.add(900us, 0s);
+  histogram.pass(999ms);
+  EXPECT_EQ(histogram.facts().max, 0);
+  histogram.pass(1s);
+  EXPECT_EQ(histogram.facts().max, 900);
+  histogram.pass(1999ms);
+  EXPECT_EQ(histogram.facts().max, 900);
+  histogram.pass(2s);
+  EXPECT_EQ(histogram.facts().max, 0);
+}
+
 TEST(Histogram, AWindowBeginsWithItsFirstMeasurement) {
   Histogram histogram;
   histogram.add(5us, 100s);

@@ -312,6 +312,19 @@ TEST(MasterFaults, NoCarrierIsSaidAtOnceAndTheRobotsComeBackWithIt) {
   ASSERT_TRUE(segment.start()) << segment.master().trouble(0);
 }
 
+// It once showed the last second with a cable for as long as there was none.
+TEST(MasterFaults, WithoutCarrierThereAreNoRoundTrips) {
+  Segment segment(settings_for(1));
+  ASSERT_TRUE(segment.start());
+  segment.fate = [](std::size_t) { return Fate{.held_up = 300us}; };
+  segment.run(3s);
+  EXPECT_EQ(segment.master().round_trip().facts().p50, 300);
+  segment.set_link(Master::Port::kPrimary, false);
+  segment.run(3s);
+  EXPECT_EQ(segment.master().round_trip().facts().p50, 0);
+  EXPECT_EQ(segment.master().round_trip().facts().max, 0);
+}
+
 TEST(MasterFaults, TheCableOfTheMasterPulledIsSilenceAndHealsToo) {
   Segment segment(settings_for(2));
   ASSERT_TRUE(segment.start());
