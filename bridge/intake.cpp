@@ -28,7 +28,7 @@ std::int64_t unix_now() {
 }
 
 // Names of others in our log: printable or replaced.
-std::string quoted(std::string_view name) {
+std::string in_quotes(std::string_view name) {
   return is_presentable(name) ? "'" + std::string(name) + "'" : "(an unprintable name)";
 }
 
@@ -56,7 +56,7 @@ RobotChannel* Sorter::find(std::string_view robot) const noexcept {
 }
 
 std::string Sorter::unknown_robot(std::string_view robot) const {
-  std::string text = "no robot " + quoted(robot) + " here; this bridge has ";
+  std::string text = "no robot " + in_quotes(robot) + " here; this bridge has ";
   for (const auto* channel : robots_) text += (channel == robots_.front() ? "" : ", ") + channel->name;
   return text;
 }
@@ -88,7 +88,7 @@ bool Sorter::sort(const meca500::Command& sample, const control::ParticipantId& 
   if (channel == nullptr) {
     const std::string text = unknown_robot(robot);
     return answer(robot, rejection(command, Reason::kNotAllowed), text,
-                  "command of " + quoted(command.client) + " rejected: " + text, unix_ns);
+                  "command of " + in_quotes(command.client) + " rejected: " + text, unix_ns);
   }
   if (channel->inbox.push(command)) return true;
   return answer(robot, rejection(command, Reason::kQueueFull), {}, {}, unix_ns);

@@ -45,7 +45,7 @@ constexpr VelocityWord kVelocities[] = {
 
 constexpr std::size_t kMostArguments = 6;
 
-std::string quoted(std::string_view word) { return "'" + std::string(word) + "'"; }
+std::string in_quotes(std::string_view word) { return "'" + std::string(word) + "'"; }
 
 std::string plural(std::size_t n, std::string_view noun) {
   return std::to_string(n) + " " + std::string(noun) + (n == 1 ? "" : "s");
@@ -80,7 +80,7 @@ std::optional<std::uint32_t> as_id(std::string_view word) {
   for (const auto& command : image::motion_commands()) known.emplace_back(command.name);
   const std::string hint = did_you_mean(name, known);
   throw UsageError(
-      "send: no motion command is called " + quoted(name) +
+      "send: no motion command is called " + in_quotes(name) +
       (hint.empty() ? "; names are those of the robot manual, as in 'meca-ctl send SetJointVel 50'" : hint));
 }
 
@@ -103,7 +103,7 @@ double parse_number(std::string_view word, std::string_view name) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole_word = error == std::errc{} && end == digits.data() + digits.size();
   if (!whole_word || !std::isfinite(value)) {
-    throw UsageError(std::string(name) + ": " + quoted(word) + " is not a finite number");
+    throw UsageError(std::string(name) + ": " + in_quotes(word) + " is not a finite number");
   }
   return value;
 }
@@ -129,7 +129,7 @@ CommandPlan plan_action(const ActionVerb& verb, std::string_view on_off) {
   if (verb.on_off) {
     if (on_off != "on" && on_off != "off") {
       throw UsageError(std::string(verb.name) + " wants 'on' or 'off', not " +
-                       (on_off.empty() ? "nothing" : quoted(on_off)));
+                       (on_off.empty() ? "nothing" : in_quotes(on_off)));
     }
     plan.title += " " + std::string(on_off);
     plan.arguments = {on_off == "on" ? 1.0 : 0.0};
@@ -171,7 +171,7 @@ CommandPlan plan_send(std::string_view id_or_name, std::span<const std::string> 
 VelocityPlan plan_velocity(std::string_view kind, std::span<const std::string> words) {
   const auto* word = std::ranges::find(kVelocities, kind, &VelocityWord::name);
   if (word == std::end(kVelocities)) {
-    throw UsageError("velocity wants joints, lin-wrf or lin-trf first, not " + quoted(kind));
+    throw UsageError("velocity wants joints, lin-wrf or lin-trf first, not " + in_quotes(kind));
   }
   const auto numbers =
       parse_arguments("velocity " + std::string(kind), *image::find_motion_command(word->motion_command_id), words);

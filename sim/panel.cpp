@@ -40,7 +40,7 @@ std::size_t row_count() noexcept {
 }
 const Row& row_of(std::size_t word) noexcept { return *place_of(word).row; }
 
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 // ---- one line of text to a request
 
@@ -83,15 +83,16 @@ std::string no_such_word(const Tokens& tokens) {
     second_words += (second_words.empty() ? "" : ", ") + std::string(words[1]);
   }
   if (!second_words.empty() && tokens.size() == 1) {
-    return quoted(tokens[0]) + " wants a second word: " + second_words + "; say for example " + quoted(first_usage);
+    return in_quotes(tokens[0]) + " wants a second word: " + second_words + "; say for example " +
+           in_quotes(first_usage);
   }
   if (!second_words.empty())
-    return quoted(tokens[0]) + " does not take " + quoted(tokens[1]) + ", only " + second_words;
+    return in_quotes(tokens[0]) + " does not take " + in_quotes(tokens[1]) + ", only " + second_words;
   const std::string said = std::string(tokens[0]) + (tokens.size() > 1 ? " " + std::string(tokens[1]) : "");
   std::string_view meant = image::nearest(said, known);
   if (meant.empty()) meant = image::nearest(tokens[0], known);  // a word that takes numbers
-  return "there is no word " + quoted(said) +
-         (meant.empty() ? "; 'help' lists them" : ", did you mean " + quoted(meant) + "?");
+  return "there is no word " + in_quotes(said) +
+         (meant.empty() ? "; 'help' lists them" : ", did you mean " + in_quotes(meant) + "?");
 }
 
 std::string in_words(double value) {
@@ -163,19 +164,20 @@ bool read_form(const Number& number, std::string_view token, double& out) {
 
 std::string read_number(const Number& number, std::string_view token, double& out) {
   if (read_form(number, token, out)) return {};
-  return std::string(number.name) + ": found " + quoted(token) + "; expected " + expected(number);
+  return std::string(number.name) + ": found " + in_quotes(token) + "; expected " + expected(number);
 }
 
 // Fills the request; returns the complaint, or nothing.
 std::string read_numbers(const Row& row, std::span<const std::string_view> tokens, PanelRequest& request) {
   if (tokens.size() > row.numbers.size()) {
-    return quoted(row.words) + " does not take " + quoted(tokens[row.numbers.size()]) + "; say " + quoted(usage(row));
+    return in_quotes(row.words) + " does not take " + in_quotes(tokens[row.numbers.size()]) + "; say " +
+           in_quotes(usage(row));
   }
   for (std::size_t i = 0; i < row.numbers.size(); ++i) {
     const Number& number = row.numbers[i];
     if (i >= tokens.size()) {
       if (!number.optional()) {
-        return quoted(row.words) + " wants " + std::string(number.name) + "; say " + quoted(usage(row));
+        return in_quotes(row.words) + " wants " + std::string(number.name) + "; say " + in_quotes(usage(row));
       }
       request.numbers[i] = number.otherwise;
     } else if (auto complaint = read_number(number, tokens[i], request.numbers[i]); !complaint.empty()) {

@@ -16,7 +16,7 @@ std::string number(double value) {
   return text.data();
 }
 
-std::string quoted(const ClientName& name) { return "'" + std::string(name.view()) + "'"; }
+std::string in_quotes(const ClientName& name) { return "'" + std::string(name.view()) + "'"; }
 
 std::string action_name(CommandKind kind) {
   switch (kind) {
@@ -157,7 +157,7 @@ std::string unknown_text(const Receipt& r) {
 
 // "'cell-plc' has control of the robot (priority 10, yours is 0)"
 std::string owner_text(const Receipt& r) {
-  std::string text = quoted(r.other) + " has control of the robot";
+  std::string text = in_quotes(r.other) + " has control of the robot";
   if (r.value != 0 || r.minimum != 0) text += " (priority " + number(r.minimum) + ", yours is " + number(r.value) + ")";
   return text;
 }
@@ -176,10 +176,10 @@ std::string not_owner_text(const Receipt& r) {
     case ControlHint::kWaiting:
       return owner_text(r) + " until its grace is over; wait for the receipt of your TAKE_CONTROL";
     case ControlHint::kOutranked:
-      return quoted(r.other) + ", of higher priority, takes over instead; wait until it releases control";
+      return in_quotes(r.other) + ", of higher priority, takes over instead; wait until it releases control";
   }
   if (r.other.empty()) {
-    return quoted(r.client) + " lost control of the robot; take control again before commanding it";
+    return in_quotes(r.client) + " lost control of the robot; take control again before commanding it";
   }
   return owner_text(r) + "; wait until it releases control";
 }
@@ -308,7 +308,7 @@ std::string state_text(const Receipt& r) {
   switch (r.state) {
     case ReceiptState::kAccepted:
       if (!r.other.empty())
-        return "taking over accepted: " + quoted(r.other) + " keeps control until its grace is over";
+        return "taking over accepted: " + in_quotes(r.other) + " keeps control until its grace is over";
       return subject(r) + " accepted";
     case ReceiptState::kSent:
       return subject(r) + " sent to the robot";

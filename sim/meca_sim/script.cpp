@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 // For a complaint: what is no printable ASCII becomes '?', as it may do anything to a terminal.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "'";
   for (const char c : text) out += c >= ' ' && c <= '~' ? c : '?';
   return out + "'";
@@ -42,12 +42,12 @@ std::string in_seconds(Time at) {
 std::variant<ScriptLine, std::string> parse_line(std::string_view text, Time previous, const ScriptStage& stage) {
   const std::string_view when = take_word(text);
   if (when != "at" && when != "after") {
-    return "found " + quoted(when) + "; a line begins with 'at TIME' or 'after TIME', e.g. 'at 2.5s unplug'";
+    return "found " + in_quotes(when) + "; a line begins with 'at TIME' or 'after TIME', e.g. 'at 2.5s unplug'";
   }
   const std::string_view time = take_word(text);
   const auto parsed_time = parse_script_time(time);
   if (!parsed_time) {
-    return "found " + quoted(time) + " behind '" + std::string(when) + "'; expected a time in s or ms, e.g. 2.5s";
+    return "found " + in_quotes(time) + " behind '" + std::string(when) + "'; expected a time in s or ms, e.g. 2.5s";
   }
   const Time at = when == "at" ? *parsed_time : previous + *parsed_time;
   if (at < previous) {
@@ -86,7 +86,7 @@ std::variant<ScriptLine, std::string> parse_event(std::string_view text, const S
     line.robot = first.substr(0, first.size() - 1);
     text = rest;
     if (!stage.robots.empty() && std::ranges::find(stage.robots, line.robot) == stage.robots.end()) {
-      return "there is no robot " + quoted(line.robot) + "; there is " + list_of(stage.robots);
+      return "there is no robot " + in_quotes(line.robot) + "; there is " + list_of(stage.robots);
     }
   }
   line.words = trimmed(text);
@@ -94,7 +94,7 @@ std::variant<ScriptLine, std::string> parse_event(std::string_view text, const S
   if (auto* complaint = std::get_if<std::string>(&request)) return std::move(*complaint);
   line.request = std::get<PanelRequest>(request);
   const std::string_view complaint = stage.bus ? misplaced(line.request, *stage.bus) : "";
-  if (!complaint.empty()) return quoted(line.words) + ": " + std::string(complaint);
+  if (!complaint.empty()) return in_quotes(line.words) + ": " + std::string(complaint);
   return line;
 }
 
