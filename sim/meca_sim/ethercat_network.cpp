@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <stdexcept>
+
+#include "transports/net/claim.hpp"
 #include "transports/net/clock.hpp"
 
 namespace meca::sim {
@@ -17,6 +20,21 @@ std::vector<net::RawEthernet> open_ports(const std::string& interface, const std
   ports.emplace_back(interface, ethercat::kEtherType);
   if (!redundant_interface.empty()) ports.emplace_back(redundant_interface, ethercat::kEtherType);
   return ports;
+}
+
+// Two simulators on one interface would both answer every frame.
+std::vector<net::File> claim_all(const std::vector<net::RawEthernet>& ports) {
+  std::vector<net::File> claims;
+  for (const net::RawEthernet& port : ports) {
+    auto claim = net::claim("meca500/ethercat-robots/" + port.interface());
+    if (!claim) {
+      throw std::runtime_error("'" + port.interface() +
+                               "' has simulated robots already: another meca-sim runs on it; stop that one first "
+                               "(several robots of one line: --count)");
+    }
+    claims.push_back(std::move(*claim));
+  }
+  return claims;
 }
 
 std::string in_words(const std::string& interface, Link link) {
@@ -38,7 +56,9 @@ std::string in_words(const std::string& interface, Link link) {
 EthercatNetwork::EthercatNetwork(const std::vector<EthercatSegment::Member>& members, ConnectionLoss on_loss,
                                  const std::string& interface, const std::string& redundant_interface, Time now,
                                  const std::vector<Narrator::Say>& say)
-    : ports_(open_ports(interface, redundant_interface)), segment_(members, ports_.size() > 1, on_loss, now) {
+    : ports_(open_ports(interface, redundant_interface)),
+      claims_(claim_all(ports_)),
+      segment_(members, ports_.size() > 1, on_loss, now) {
   for (std::size_t i = 0; i < segment_.size(); ++i) {
     narrators_.push_back(std::make_unique<EthercatNarrator>(segment_.robot(i), say[i]));
   }

@@ -10,6 +10,7 @@
 #include "sim/meca_sim/ethercat_narrator.hpp"
 #include "sim/meca_sim/ethercat_segment.hpp"
 #include "sim/meca_sim/network.hpp"
+#include "transports/net/file.hpp"
 #include "transports/net/raw_ethernet.hpp"
 
 namespace meca::sim {
@@ -42,6 +43,7 @@ class EthercatNetwork final : public Network {
   void look_at_links(Time now) noexcept;
 
   std::vector<net::RawEthernet> ports_;  // by Side; the second one in a ring only
+  std::vector<net::File> claims_;        // of their interfaces
   EthercatSegment segment_;
   std::vector<std::unique_ptr<EthercatNarrator>> narrators_;
   Time look_at_links_at_{};

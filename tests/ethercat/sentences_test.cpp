@@ -55,5 +55,13 @@ TEST_F(Sentence, OfAnInterfaceThatIsDownSaysHowItComesUp) {
   EXPECT_TRUE(sim.wait_for_output("meca1 is down: 'ip link set meca1 up' switches it on")) << sim.output();
 }
 
+TEST_F(Sentence, OfASecondSimulatorOnAnInterfaceNamesTheFirst) {
+  start_robots(1);
+  const Result result = run({kSim, "--protocol", "ethercat", "--interface", "meca1", "--control", "off"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.output, HasSubstr("'meca1' has simulated robots already: another meca-sim runs on it; stop that "
+                                       "one first (several robots of one line: --count)"));
+}
+
 }  // namespace
 }  // namespace meca::test
