@@ -66,7 +66,7 @@ ExitCode show(const FoundPanel& panel, std::string_view answer, const Report& re
 }  // namespace
 
 ExitCode run_sim(const Invocation& call, const Report& report) {
-  if (call.sim_line.empty()) {
+  if (call.sim_line.empty() || call.sim_line == "help") {  // needs no robot
     report.text("What to say behind 'meca-ctl sim':\n" + sim::panel_help());
     report.object({{"words", lines_of(sim::panel_help())}});
     return ExitCode::kDone;

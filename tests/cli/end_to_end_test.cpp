@@ -301,9 +301,11 @@ TEST_F(MecaCtl, SimAnswersMistakesWithExitCodeOneAndNeedsNoBridgeForItsWords) {
   EXPECT_EQ(json[0]["robot"], "arm1");
   EXPECT_EQ(json[0]["answer"][0], "the robot is in error");
   bridge_.reset();
-  const auto words = ctl({"sim"});
-  EXPECT_EQ(words.exit_code, 0);
-  EXPECT_THAT(words.output, HasSubstr("press p-stop2"));
+  for (const std::vector<std::string>& asked : {std::vector<std::string>{"sim"}, {"sim", "help"}}) {
+    const auto words = ctl(asked);
+    EXPECT_EQ(words.exit_code, 0);
+    EXPECT_THAT(words.output, HasSubstr("press p-stop2"));
+  }
   const auto nobody = ctl({"sim", "status", "--robot", "arm1"});
   EXPECT_EQ(nobody.exit_code, 4);
   EXPECT_THAT(nobody.output, HasSubstr("no simulated robot 'arm1' on this machine in domain 70"));
