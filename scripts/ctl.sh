@@ -8,6 +8,7 @@ ctl=build/release/bin/meca-ctl
 pid=$(ethercat_run)
 [ -n "$pid" ] || exec "$ctl" "$@"
 
+share_sockets
 enter=(nsenter --target "$pid" --net)
 if [ -r "/proc/$pid/ns/net" ] && [ -r "/proc/$pid/ns/user" ]; then
   [ "$(readlink "/proc/$pid/ns/user")" = "$(readlink /proc/self/ns/user)" ] || enter+=(--user --preserve-credentials)

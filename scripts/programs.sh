@@ -3,6 +3,14 @@
 
 run_file=build/run.pid
 
+# Where bridge, meca-sim and meca-ctl find each other's control sockets, in whichever namespace each is: the directory that
+# they take by themselves carries the user id, and that is root's in a user namespace.
+share_sockets() {
+  [ -d "${XDG_RUNTIME_DIR:-}" ] && return
+  export XDG_RUNTIME_DIR=/tmp/meca500-run-$(id -u)
+  mkdir -p -m 700 "$XDG_RUNTIME_DIR"
+}
+
 # one_at_a_time WORD...: refuses when a './meca run' of this tree goes on: their robots have the same names. The lock
 # is held through exec, and ends with its process, however that ends.
 one_at_a_time() {

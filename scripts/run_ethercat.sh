@@ -27,6 +27,7 @@ if [ "${1:-}" != --inside ]; then
   need build ethercat
   build release meca-bridge meca-ctl meca-sim
   find_way_in
+  share_sockets
   exec "${way_in[@]}" "$0" --inside "$@"
 fi
 shift

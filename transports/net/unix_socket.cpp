@@ -133,7 +133,9 @@ bool is_private_directory(const fs::path& directory) noexcept {
 void make_private_directory(const fs::path& directory) {
   if (::mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST) fail(directory, "cannot be made: " + reason());
   if (!is_private_directory(directory)) {
-    fail(directory, "is not a directory that only this user may enter; remove it, or make it mode 0700");
+    fail(directory,
+         "is not a directory that only this user may enter; remove it, make it mode 0700, or, where it is another "
+         "user's, set XDG_RUNTIME_DIR to a directory of your own");
   }
 }
 
