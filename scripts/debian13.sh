@@ -37,5 +37,6 @@ exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 MECA_JOBS
   unshare --mount --pid --fork --kill-child bash -euc '
     root=$1; shift
     mount -t proc proc "$root/proc"
+    mkdir -p "$root/dev/pts"; mount -t devpts devpts "$root/dev/pts"
     mkdir -p "$root/dev/shm"; mount -t tmpfs tmpfs "$root/dev/shm"
     exec chroot "$root" bash -c "cd /src && exec ./meca test \"\$@\"" meca "$@"' meca "$root" "$@"
