@@ -8,6 +8,10 @@ if [ "${1:-}" = ethercat ]; then
   shift
   exec scripts/run_ethercat.sh "$@"
 fi
+case ${1:-} in
+  '' | ethernet_ip | -*) ;;
+  *) die "run: '$1' is neither ethernet_ip nor ethercat, nor an option of meca-bridge; a file of your own: --config $1" ;;
+esac
 need build
 
 what_to_type() {
