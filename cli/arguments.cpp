@@ -34,7 +34,8 @@ Control ends with the command (unless you 'take' it); motion that the robot has 
 meca-ctl is no safety device: the emergency stop is the button.)";
 
 constexpr const char* kScanFooter = R"(
-ethernet_ip: asks on every interface of --interface, or on all of this machine. Waits --timeout seconds, default 2.5.
+ethernet_ip: asks on every interface of --interface, or on all of this machine but the loopback (meca-sim there:
+--interface lo). Waits --timeout seconds, default 2.5.
 
 ethercat: lists the devices of the chain on --interface in the order of the cable: address and alias, who each one is,
 its AL state and error, which ports have a link, what the error counters have counted since power-on, and whether it

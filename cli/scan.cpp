@@ -131,7 +131,8 @@ std::string nobody_answered(std::span<const ScanTarget> targets, std::chrono::na
   return "no EtherNet/IP device answered within " + seconds_text(waited) + " (asked: " + asked +
          "); check that the robot has power and a cable to this network, that EtherNet/IP is enabled on it, that this "
          "machine has an address in the robot's network (192.168.0.x from the factory), and that no firewall drops "
-         "answers from UDP port 44818; --address asks one robot alone, which more firewalls let through";
+         "answers from UDP port 44818; --address asks one robot alone, which more firewalls let through; a meca-sim on "
+         "this machine's loopback: --interface lo";
 }
 
 }  // namespace meca::cli
