@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <vector>
 
+#include "tests/fuzz/source.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 
 namespace {
@@ -24,30 +24,6 @@ void require(bool condition, const char* what) {
   std::fprintf(stderr, "ethernet_ip_adapter_fuzz: %s\n", what);
   std::abort();
 }
-
-// Bytes of the input, zeros when it has ended.
-class Source {
- public:
-  Source(const std::uint8_t* data, std::size_t size) : rest_(std::as_bytes(std::span(data, size))) {}
-  bool empty() const { return rest_.empty(); }
-  std::uint8_t u8() {
-    const Bytes b = take(1);
-    return b.empty() ? 0 : std::to_integer<std::uint8_t>(b[0]);
-  }
-  std::uint32_t u32() {
-    std::uint32_t value = 0;
-    for (int i = 0; i < 4; ++i) value |= std::uint32_t{u8()} << (8 * i);
-    return value;
-  }
-  Bytes take(std::size_t count) {
-    const Bytes out = rest_.first(std::min(count, rest_.size()));
-    rest_ = rest_.subspan(out.size());
-    return out;
-  }
-
- private:
-  Bytes rest_;
-};
 
 AdapterSettings settings_of(std::uint8_t choice) {
   AdapterSettings s;
@@ -72,14 +48,14 @@ AdapterSettings settings_of(std::uint8_t choice) {
 
 class World {
  public:
-  explicit World(Source& in) : in_(in), adapter_(settings_of(in.u8())) {}
+  explicit World(fuzz::Source& in) : in_(in), adapter_(settings_of(in.take<std::uint8_t>())) {}
 
   void step() {
-    const std::uint8_t kind = in_.u8();
+    const auto kind = in_.take<std::uint8_t>();
     const std::size_t id = kind >> 4 & 7;
     switch (kind & 15) {
       case 0:
-        peers_[id] = kHosts[in_.u8() & 3];
+        peers_[id] = kHosts[in_.take<std::uint8_t>() & 3];
         session_[id] = 0;
         raw_[id] = false;
         adapter_.tcp_accepted(id, peers_[id], now_);
@@ -89,7 +65,7 @@ class World {
         break;
       case 2:
         raw_[id] = true;
-        tcp(id, in_.take(in_.u8()));
+        tcp(id, in_.take_bytes(in_.take<std::uint8_t>()));
         break;
       case 3:
         request(id);
@@ -98,13 +74,13 @@ class World {
         udp();
         break;
       case 5:
-        io({kHosts[in_.u8() & 3], 2222}, in_.take(in_.u8()));
+        io({kHosts[in_.take<std::uint8_t>() & 3], 2222}, in_.take_bytes(in_.take<std::uint8_t>()));
         break;
       case 6:
         outputs();
         break;
       case 7:
-        now_ += std::chrono::microseconds(100) * (std::uint64_t{in_.u8()} << (kind >> 4));
+        now_ += std::chrono::microseconds(100) * (std::uint64_t{in_.take<std::uint8_t>()} << (kind >> 4));
         adapter_.tick(now_);
         break;
       case 8:
@@ -141,9 +117,10 @@ class World {
 
   // An explicit request of the input in a right envelope, with a socket address item where the input says so.
   void request(std::size_t id) {
-    const std::uint8_t flags = in_.u8();
-    const Bytes cip = in_.take(in_.u8());
-    const SocketAddress wanted{(flags & 2) != 0 ? in_.u32() : 0, static_cast<std::uint16_t>(in_.u32())};
+    const auto flags = in_.take<std::uint8_t>();
+    const auto cip = in_.take_bytes(in_.take<std::uint8_t>());
+    const SocketAddress wanted{(flags & 2) != 0 ? in_.take<std::uint32_t>() : 0,
+                               static_cast<std::uint16_t>(in_.take<std::uint32_t>())};
     const auto data = written([&](wire::Writer& out) {
       out.zeros(6);
       out.u16((flags & 1) != 0 ? 3 : 2);
@@ -187,7 +164,7 @@ class World {
   }
 
   void udp() {
-    const Bytes datagram = in_.take(in_.u8());
+    const auto datagram = in_.take_bytes(in_.take<std::uint8_t>());
     const auto answer = adapter_.udp_received(datagram, (datagram.size() & 1) != 0);
     if (answer.bytes.empty()) return;
     const auto header = read_header(answer.bytes);
@@ -202,9 +179,9 @@ class World {
   }
 
   void outputs() {
-    const std::uint8_t flags = in_.u8();
-    const std::uint32_t id = 0x100u + in_.u8();
-    const std::uint32_t sequence = in_.u32();
+    const auto flags = in_.take<std::uint8_t>();
+    const std::uint32_t id = 0x100u + in_.take<std::uint8_t>();
+    const auto sequence = in_.take<std::uint32_t>();
     io({kHosts[flags & 3], 2222}, written([&](wire::Writer& out) {
          write_io_packet(out, id, sequence, 66);
          out.u16(static_cast<std::uint16_t>(sequence));
@@ -214,12 +191,13 @@ class World {
   }
 
   void faults() {
-    const std::uint8_t flags = in_.u8();
+    const auto flags = in_.take<std::uint8_t>();
     AdapterFaults& f = adapter_.faults();
-    f.refuse_open = (flags & 1) != 0 ? std::optional<std::uint16_t>(in_.u8()) : std::nullopt;
-    f.wrong_size = (flags & 2) != 0 ? std::optional(static_cast<std::uint16_t>(in_.u32())) : std::nullopt;
-    f.api_us = (flags & 4) != 0 ? std::optional(in_.u32()) : std::nullopt;
-    f.foreign_address = (flags & 8) != 0 ? std::optional(SocketAddress{in_.u32(), 80}) : std::nullopt;
+    f.refuse_open = (flags & 1) != 0 ? std::optional<std::uint16_t>(in_.take<std::uint8_t>()) : std::nullopt;
+    f.wrong_size =
+        (flags & 2) != 0 ? std::optional(static_cast<std::uint16_t>(in_.take<std::uint32_t>())) : std::nullopt;
+    f.api_us = (flags & 4) != 0 ? std::optional(in_.take<std::uint32_t>()) : std::nullopt;
+    f.foreign_address = (flags & 8) != 0 ? std::optional(SocketAddress{in_.take<std::uint32_t>(), 80}) : std::nullopt;
     f.stop_producing = (flags & 16) != 0;
     f.duplicate = (flags & 32) != 0;
     f.stale_sequence = (flags & 64) != 0;
@@ -241,7 +219,7 @@ class World {
     }
   }
 
-  Source& in_;
+  fuzz::Source& in_;
   Adapter adapter_;
   Time now_{};
   std::array<std::uint32_t, 8> peers_{}, session_{};
@@ -253,7 +231,7 @@ class World {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Source in(data, size);
+  fuzz::Source in(data, size);
   World world(in);
   for (int record = 0; record < 300 && !in.empty(); ++record) world.step();  // many short lives rather than a long one
   return 0;
