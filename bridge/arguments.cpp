@@ -1,10 +1,7 @@
 #include "bridge/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <filesystem>
-
-#include "bridge/config_values.hpp"
 
 namespace meca::bridge {
 namespace {
@@ -22,32 +19,15 @@ Every key of the configuration is explained in config/reference.yaml. Robots are
 Exit codes: 0 asked to stop (SIGINT, SIGTERM)   2 arguments   3 configuration   4 network or DDS could not be opened
 The bridge is no safety function: emergency stop and protective stop stay hard-wired.)";
 
-constexpr std::array<std::string_view, 5> kOptions{"--config", "--check", "--log-level", "--version", "--help"};
-
-// What was probably meant by an argument that the command line does not know.
-std::string suggestion(int argc, const char* const* argv) {
+// A configuration without its option.
+std::string configuration_hint(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
-    const std::string_view name = argument.substr(0, argument.find('='));
-    if (name.starts_with("--") && std::find(kOptions.begin(), kOptions.end(), name) == kOptions.end()) {
-      const std::string_view best = config_values::nearest(name, kOptions);
-      if (!best.empty()) return "; did you mean '" + std::string(best) + "'?";
-    }
     const bool yaml = argument.ends_with(".yaml") || argument.ends_with(".yml");
     const bool value = i > 1 && std::string_view(argv[i - 1]).starts_with("-");
     if (yaml && !value && !argument.starts_with("-")) return "; did you mean '--config " + std::string(argument) + "'?";
   }
   return {};
-}
-
-Arguments answer(ExitCode code, std::string text) {
-  Arguments arguments;
-  arguments.answer = {code, std::move(text)};
-  return arguments;
-}
-
-Arguments mistake(const std::string& text) {
-  return answer(ExitCode::kArguments, "meca-bridge: " + text + "\nmeca-bridge --help shows the options and examples\n");
 }
 
 std::string transport_details(const RobotConfig& robot) {
@@ -75,8 +55,6 @@ std::string transport_details(const RobotConfig& robot) {
 Arguments parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "meca-bridge");
   app.footer(kExamples);
-  app.set_version_flag("--version", "meca-bridge " MECA_VERSION, "say the version and leave");
-  app.set_help_flag("-h,--help", "say this and leave");
   Arguments arguments;
   std::string level;
   app.add_option("--config", arguments.config_file, std::string("the configuration; default ") + kDefaultConfigFile)
@@ -85,21 +63,15 @@ Arguments parse_arguments(int argc, const char* const* argv) {
   app.add_option("--log-level", level, "trace, debug, info, warn, error or off; wins over the configuration")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->type_name("LEVEL");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    return answer(ExitCode::kStopped, app.help());
-  } catch (const CLI::CallForVersion& version) {
-    return answer(ExitCode::kStopped, std::string(version.what()) + "\n");
-  } catch (const CLI::ParseError& error) {
-    return mistake(error.what() + suggestion(argc, argv));
-  }
+  arguments.answer = parse_command_line(app, MECA_VERSION, argc, argv, configuration_hint(argc, argv));
+  if (arguments.answer) return arguments;
   if (!level.empty()) arguments.log_level = level;
   if (arguments.config_file.empty()) {
     std::error_code ignored;
     if (!std::filesystem::exists(kDefaultConfigFile, ignored)) {
-      return mistake(std::string("no --config FILE given, and there is no ") + kDefaultConfigFile +
-                     "; to try it out: --config config/builtin.yaml");
+      arguments.answer =
+          mistake("meca-bridge", std::string("meca-bridge: no --config FILE given, and there is no ") +
+                                     kDefaultConfigFile + "; to try it out: --config config/builtin.yaml\n");
     }
     arguments.config_file = kDefaultConfigFile;
   }

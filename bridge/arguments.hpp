@@ -5,18 +5,13 @@
 #include <string>
 
 #include "bridge/config.hpp"
+#include "transports/command_line.hpp"
 
 namespace meca::bridge {
-
-enum class ExitCode : int { kStopped = 0, kArguments = 2, kConfiguration = 3, kNetwork = 4 };
 
 inline constexpr const char* kDefaultConfigFile = "/etc/meca500/bridge.yaml";
 
 struct Arguments {
-  struct Answer {
-    ExitCode code;
-    std::string text;
-  };
   std::optional<Answer> answer;  // --help, --version, or a mistake: print it and leave
   std::string config_file;
   bool check = false;

@@ -13,6 +13,7 @@
 
 namespace {
 
+using meca::ExitCode;
 using namespace meca::bridge;
 
 void print_problems(const ConfigResult& result) {
@@ -53,10 +54,7 @@ sigset_t take_signals() {
 
 int main(int argc, char** argv) {
   const Arguments arguments = parse_arguments(argc, argv);
-  if (arguments.answer) {
-    (arguments.answer->code == ExitCode::kStopped ? std::cout : std::cerr) << arguments.answer->text;
-    return static_cast<int>(arguments.answer->code);
-  }
+  if (arguments.answer) return print(*arguments.answer);
   const ConfigResult loaded = load_config(arguments.config_file);
   print_problems(loaded);
   if (!loaded.config) return static_cast<int>(ExitCode::kConfiguration);

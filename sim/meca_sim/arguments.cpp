@@ -260,53 +260,21 @@ void complete(const Texts& t, Arguments& out) {
   if (t.no_lrw) out.device.esc.features |= ethercat::kFeatureNoLrw;
 }
 
-// What was probably meant by an option that there is none of.
-std::string suggestion(const CLI::App& app, int argc, const char* const* argv) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) names.push_back("--" + option->get_single_name());
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    const std::string_view name = argument.substr(0, argument.find('='));
-    if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) return guess(name, known);
-  }
-  return {};
-}
-
-Arguments answer(ExitCode code, std::string text) {
-  Arguments arguments;
-  arguments.answer = {code, std::move(text)};
-  return arguments;
-}
-
-Arguments mistake(const std::string& text) {
-  return answer(ExitCode::kArguments, text + "meca-sim --help shows the options and examples\n");
-}
-
 }  // namespace
 
 Arguments parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "meca-sim");
   app.footer(kExamples);
-  app.set_version_flag("--version", "meca-sim " MECA_VERSION, "say the version and leave");
-  app.set_help_flag("-h,--help", "say this and leave");
   Arguments arguments;
   Texts texts;
   add_options(app, texts, arguments);
   add_ethernet_ip_options(app, texts, arguments);
   add_ethercat_options(app, texts, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    return answer(ExitCode::kStopped, app.help());
-  } catch (const CLI::CallForVersion& version) {
-    return answer(ExitCode::kStopped, std::string(version.what()) + "\n");
-  } catch (const CLI::ParseError& error) {
-    return mistake("meca-sim: " + std::string(error.what()) + suggestion(app, argc, argv) + "\n");
-  }
+  arguments.answer = parse_command_line(app, MECA_VERSION, argc, argv);
+  if (arguments.answer) return arguments;
   Reader reader;
   take(app, texts, reader, arguments);
-  if (!reader.mistakes().empty()) return mistake(reader.mistakes());
+  if (!reader.mistakes().empty()) arguments.answer = mistake("meca-sim", reader.mistakes());
   complete(texts, arguments);
   return arguments;
 }

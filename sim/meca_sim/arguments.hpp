@@ -7,18 +7,13 @@
 
 #include "sim/meca_sim/connection_loss.hpp"
 #include "sim/meca_sim/script.hpp"
+#include "transports/command_line.hpp"
 #include "transports/ethercat/device.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 
 namespace meca::sim {
 
-enum class ExitCode : int { kStopped = 0, kArguments = 2, kNetwork = 4 };
-
 struct Arguments {
-  struct Answer {
-    ExitCode code;
-    std::string text;
-  };
   std::optional<Answer> answer;  // --help, --version, or all mistakes: print it and leave
 
   Fieldbus bus = Fieldbus::kEthernetIp;

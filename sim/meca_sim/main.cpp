@@ -5,12 +5,12 @@
 
 #include <csignal>
 #include <exception>
-#include <iostream>
 
 #include "sim/meca_sim/station.hpp"
 
 namespace {
 
+using meca::ExitCode;
 using namespace meca::sim;
 
 // A file that can be read once the program is asked to stop. Blocked before there are threads, so that all inherit it.
@@ -41,10 +41,7 @@ void run(const Arguments& arguments, int stop) {
 
 int main(int argc, char** argv) {
   const Arguments arguments = parse_arguments(argc, argv);
-  if (arguments.answer) {
-    (arguments.answer->code == ExitCode::kStopped ? std::cout : std::cerr) << arguments.answer->text;
-    return static_cast<int>(arguments.answer->code);
-  }
+  if (arguments.answer) return print(*arguments.answer);
   const auto stop = take_signals();
   start_log(arguments.log_level);
   try {
