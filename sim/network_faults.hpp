@@ -24,14 +24,18 @@ struct NetworkFaults {
   bool without_power = false;
   bool frozen = false;  // explicit messages and mails are answered, I/O is not handled
   Time late{};          // explicit messages and discovery are answered so much later; EtherCAT: every frame
+  bool duplicate = false, corrupt = false;  // T->O packets, or frames, come twice; have not all their bytes
 
   // EtherCAT (transports/ethercat/device.hpp says what most of them do)
   bool cut = false;              // the cable before this robot, towards the master
+  bool cut_behind = false;       // the one behind it; of the last robot of a ring: back to the master
   std::uint32_t lose_next = 0;   // so many frames do not come back; counted down by who loses them
   std::uint32_t lose_every = 0;  // one of so many frames does not come back; 0: none
   int working_counter = 0;
   std::optional<std::uint16_t> refuse_state;
   bool lose_mails = false, no_mailbox = false;
+  std::int32_t clock_drift = 0;  // ppm, on top of what its clock drifts by itself
+  bool foreign = false;          // another maker's device is in its place
 
   // EtherNet/IP (transports/ethernet_ip/adapter.hpp says what each does)
   std::optional<std::uint16_t> refuse_open;
@@ -39,7 +43,7 @@ struct NetworkFaults {
   std::optional<std::uint32_t> api_us;
   bool no_socket_items = false;
   std::optional<NetworkAddress> foreign_address;
-  bool stop_producing = false, duplicate = false, stale_sequence = false, corrupt = false, frozen_count = false;
+  bool stop_producing = false, stale_sequence = false, frozen_count = false;
 
   // Not states but events: how often each was asked for, and with which code last.
   struct Events {

@@ -9,9 +9,20 @@ using Form = Number::Form;
 constexpr Number kHowMany[] = {{"N", 1, 1'000'000, Form::kWhole}};
 constexpr Number kEvery[] = {{"N", 0, 1'000'000, Form::kWhole}};
 constexpr Number kAdded[] = {{"N", -3, 3, Form::kWhole}};
+constexpr Number kDrift[] = {{"PPM", -1000, 1000, Form::kWhole}};
 constexpr Number kCode[] = {{"CODE", 1, 65535, Form::kCode}};
 
 constexpr Row kRows[] = {
+    network_row("cut behind", {}, "the cable behind this robot; of the last one in a ring: back to the master",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.cut_behind = true;
+                  done(answer, "the cable behind this robot is cut");
+                }),
+    network_row("heal behind", {}, "puts a new cable there",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.cut_behind = false;
+                  done(answer, "the cable behind this robot is whole");
+                }),
     network_row("cut", {}, "the cable before this robot: it and those behind it are not reached from there",
                 [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
                   f.cut = true;
@@ -47,6 +58,21 @@ constexpr Row kRows[] = {
                   f.working_counter = static_cast<int>(r.numbers[0]);
                   done(answer,
                        f.working_counter != 0 ? "the working counter is wrong" : "the working counter is right");
+                }),
+    network_row("clock drift", kDrift, "so much faster runs the robot's clock, on top of --clock-ppm; 0 ends it",
+                [](NetworkFaults& f, const PanelRequest& r, PanelAnswer& answer) noexcept {
+                  f.clock_drift = static_cast<std::int32_t>(r.numbers[0]);
+                  done(answer, f.clock_drift != 0 ? "the clock drifts" : "the clock drifts no more than by itself");
+                }),
+    network_row("foreign on", {}, "another maker's device in the robot's place, until 'foreign off'",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.foreign = true;
+                  done(answer, "another maker's device is in the robot's place");
+                }),
+    network_row("foreign off", {}, "the robot is back, and starts up",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.foreign = false;
+                  done(answer, "the robot is in its place");
                 }),
     network_row("refuse state", kCode, "every state above PREOP, with this AL status code, e.g. 0x0025",
                 [](NetworkFaults& f, const PanelRequest& r, PanelAnswer& answer) noexcept {

@@ -48,20 +48,10 @@ constexpr Row kRows[] = {
                   f.stop_producing = true;
                   done(answer, "no T->O packets");
                 }),
-    network_row("duplicate", {}, "every T->O packet twice",
-                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
-                  f.duplicate = true;
-                  done(answer, "every T->O packet comes twice");
-                }),
     network_row("stale sequence", {}, "every second T->O packet has an old sequence number",
                 [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
                   f.stale_sequence = true;
                   done(answer, "every second T->O packet is stale");
-                }),
-    network_row("corrupt", {}, "T->O packets of a wrong length",
-                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
-                  f.corrupt = true;
-                  done(answer, "T->O packets are too short");
                 }),
     network_row("frozen count", {}, "T->O packets say they have no new data",
                 [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {

@@ -42,6 +42,16 @@ constexpr Row kRows[] = {
                   f.late = std::chrono::duration_cast<Time>(std::chrono::duration<double, std::milli>(r.numbers[0]));
                   done(answer, f.late > Time::zero() ? "answers are late" : "answers come at once");
                 }),
+    network_row("duplicate", {}, "every T->O packet twice; EtherCAT: every frame comes back twice",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.duplicate = true;
+                  done(answer, "what the robot sends comes twice");
+                }),
+    network_row("corrupt", {}, "T->O packets of a wrong length; EtherCAT: of every frame half comes back",
+                [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
+                  f.corrupt = true;
+                  done(answer, "what the robot sends is too short");
+                }),
     network_row("faults off", {}, "ends everything that is wrong with the network; buttons and errors stay",
                 [](NetworkFaults& f, const PanelRequest&, PanelAnswer& answer) noexcept {
                   NetworkFaults healthy;

@@ -118,6 +118,8 @@ std::string faults_text(const NetworkFaults& f) {
   add(f.without_power, "power off");
   add(f.frozen, "freeze");
   add(f.late > Time::zero(), with("late %.6g", std::chrono::duration<double, std::milli>(f.late).count()));
+  add(f.duplicate, "duplicate");
+  add(f.corrupt, "corrupt");
   if (f.refuse_open) add(true, with("refuse open 0x%04x", unsigned{*f.refuse_open}));
   if (f.wrong_size) add(true, with("wrong size %u", unsigned{*f.wrong_size}));
   if (f.api_us) add(true, with("api %u", unsigned{*f.api_us}));
@@ -128,16 +130,17 @@ std::string faults_text(const NetworkFaults& f) {
                    unsigned{f.foreign_address->port}));
   }
   add(f.stop_producing, "stop producing");
-  add(f.duplicate, "duplicate");
   add(f.stale_sequence, "stale sequence");
-  add(f.corrupt, "corrupt");
   add(f.frozen_count, "frozen count");
   add(f.cut, "cut");
+  add(f.cut_behind, "cut behind");
   add(f.lose_next > 0, with("lose next %u", unsigned{f.lose_next}));
   add(f.lose_every > 0, with("lose every %u", unsigned{f.lose_every}));
   add(f.lose_mails, "lose mails");
   add(f.no_mailbox, "no mailbox");
   add(f.working_counter != 0, with("working counter %d", f.working_counter));
+  add(f.clock_drift != 0, with("clock drift %d", int{f.clock_drift}));
+  add(f.foreign, "foreign on");
   if (f.refuse_state) add(true, with("refuse state 0x%04x", unsigned{*f.refuse_state}));
   return text.empty() ? "nothing is wrong with the network" : text;
 }

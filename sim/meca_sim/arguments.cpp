@@ -30,7 +30,8 @@ constexpr const char* kExamples = R"(Examples:
 While it runs, the buttons and faults of each robot are at hand:
   meca-ctl sim press p-stop2
   meca-ctl --robot arm2 sim unplug
-  meca-ctl sim help                                   all words; the same in --fault and in --faults files
+  meca-ctl --robot arm2 sim "clock drift 100"
+The words, the same in --fault and in --faults files, stand at the end; 'meca-ctl sim help' lists them too.
 
 A file for --faults has a line for every event, in the order of their times:
   at 2.5s unplug                                      since the program was ready
@@ -264,7 +265,7 @@ void complete(const Texts& t, Arguments& out) {
 
 Arguments parse_arguments(int argc, const char* const* argv) {
   CLI::App app(kAbout, "meca-sim");
-  app.footer(kExamples);
+  app.footer(kExamples + ("\n\nWords of a robot:\n" + panel_help()));
   Arguments arguments;
   Texts texts;
   add_options(app, texts, arguments);
@@ -316,11 +317,6 @@ ethercat::DeviceSettings device_of(const Arguments& arguments, std::size_t index
   if (device.alias != 0) device.alias = static_cast<std::uint16_t>(device.alias + index);
   if (index % 2 == 1) device.esc.clock_ppm = -device.esc.clock_ppm;
   device.esc.clock_start = std::chrono::nanoseconds(std::chrono::milliseconds(1234)).count() * (index + 1);
-  // An EK1100, as its public ESI has it: the coupler of terminals that is often met in front of a robot.
-  if (std::ranges::find(arguments.foreign, arguments.names[index]) != arguments.foreign.end()) {
-    device.vendor = 2;
-    device.product = 0x044C'2C52;
-  }
   return device;
 }
 

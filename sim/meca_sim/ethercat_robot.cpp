@@ -9,11 +9,14 @@ constexpr Time kLongestSilence = std::chrono::milliseconds(100);
 constexpr Time kShortestStep = std::chrono::microseconds(1);
 // The device's application looks at mails, AL control and watchdogs so often without a frame.
 constexpr Time kTick = std::chrono::milliseconds(1);
+// Another maker's device: an EK1100, as its public ESI has it, the coupler of terminals that is often met in front of a
+// robot.
+constexpr std::uint32_t kForeignVendor = 2, kForeignProduct = 0x044C'2C52;
 
 }  // namespace
 
-EthercatRobot::EthercatRobot(const RobotOptions& model, const ethercat::DeviceSettings& device, ConnectionLoss on_loss,
-                             Time now)
+EthercatRobot::EthercatRobot(const RobotOptions& model, const ethercat::DeviceSettings& device, bool foreign,
+                             ConnectionLoss on_loss, Time now)
     : robot_(model),
       device_(device),
       format_{model.layout, std::endian::little},
@@ -21,6 +24,8 @@ EthercatRobot::EthercatRobot(const RobotOptions& model, const ethercat::DeviceSe
       lived_until_(now),
       next_tick_(now + kTick) {
   faults_.bus = Fieldbus::kEthercat;
+  faults_.foreign = foreign;
+  if (foreign) exchange_device(now);
   show_inputs();
 }
 
@@ -42,16 +47,26 @@ void EthercatRobot::carry_faults(Time now) noexcept {
   to.lose_mailbox_replies = faults_.lose_mails;
   to.no_mailbox = faults_.no_mailbox;
   to.frozen_inputs = faults_.frozen;
+  to.clock_drift = faults_.clock_drift;
   if (faults_.events.al_errors != seen_.al_errors) device_.raise_al_error(faults_.events.al_error, now);
   if (faults_.events.emergencies != seen_.emergencies) device_.send_emergency({.code = faults_.events.emergency});
   seen_ = faults_.events;
-  // At once, so that nothing of it is left when the power is back.
-  if (faults_.without_power && !without_power_) robot_.power_cycle();
+  // At once, so that nothing of it is left when the power is back. An exchange takes time too: the place is empty
+  // meanwhile.
+  if ((faults_.without_power && !without_power_) || faults_.foreign != foreign_) robot_.power_cycle();
   without_power_ = faults_.without_power;
+  if (faults_.foreign != foreign_) exchange_device(now);
+}
+
+void EthercatRobot::exchange_device(Time now) noexcept {
+  foreign_ = faults_.foreign;
+  device_.exchange(foreign_ ? kForeignVendor : ethercat::kMecademicVendor,
+                   foreign_ ? kForeignProduct : ethercat::kMeca500Product, now);
+  was_operational_ = false;
 }
 
 void EthercatRobot::live(Time now) noexcept {
-  const bool fresh = device_.take_fresh() && !faults_.frozen && powered();
+  const bool fresh = device_.take_fresh() && !faults_.frozen && powered() && !foreign_;
   if (!fresh && now < next_cycle()) return;
   if (fresh) {
     const Time dt = std::clamp(now - lived_until_, kShortestStep, kLongestSilence);

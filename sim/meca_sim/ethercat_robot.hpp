@@ -17,15 +17,16 @@ class EthercatRobot {
   // synchronised by its sync manager: an image is applied when it arrives, and the next frame carries what came of it.
   static constexpr Time kCycle = std::chrono::milliseconds(1);
 
-  // A connection is the time in OP.
-  EthercatRobot(const RobotOptions& model, const ethercat::DeviceSettings& device, ConnectionLoss on_loss, Time now);
+  // A connection is the time in OP. `foreign`: another maker's device is in its place from the beginning.
+  EthercatRobot(const RobotOptions& model, const ethercat::DeviceSettings& device, bool foreign, ConnectionLoss on_loss,
+                Time now);
 
   // Brings device, model and faults up to `now`, and applies the outputs that have arrived; after every frame, before
   // the next one. Of a long silence (a debugger) the model lives 100 ms.
   void advance(Time now) noexcept;
   Time next_event() const noexcept;  // when advance() has something to do without a frame
 
-  // False: it has no power, or is starting up; frames end before it.
+  // False: it has no power, or is starting up; frames end before it. So does another maker's device in its place.
   bool powered() const noexcept { return robot_.present() && !without_power_; }
 
   Robot& robot() noexcept { return robot_; }
@@ -37,6 +38,7 @@ class EthercatRobot {
 
  private:
   void carry_faults(Time now) noexcept;
+  void exchange_device(Time now) noexcept;
   void live(Time now) noexcept;
   void watch_power(Time now) noexcept;
   void watch_connection() noexcept;
@@ -52,7 +54,7 @@ class EthercatRobot {
   Time lived_until_;
   Time next_tick_;
   bool follows_host_ = false;  // its outputs come: the next ones are waited for a little longer than a cycle
-  bool without_power_ = false, was_powered_ = true, was_operational_ = false;
+  bool without_power_ = false, foreign_ = false, was_powered_ = true, was_operational_ = false;
 };
 
 }  // namespace meca::sim

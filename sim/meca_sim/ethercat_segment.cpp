@@ -11,7 +11,9 @@ std::vector<EthercatRobot> make_robots(const std::vector<EthercatSegment::Member
                                        Time now) {
   std::vector<EthercatRobot> robots;
   robots.reserve(members.size());
-  for (const auto& member : members) robots.emplace_back(member.model, member.device, on_loss, now);
+  for (const auto& member : members) {
+    robots.emplace_back(member.model, member.device, member.foreign, on_loss, now);
+  }
   return robots;
 }
 
@@ -38,10 +40,17 @@ std::optional<EthercatSegment::Side> EthercatSegment::process(Side in, std::span
   const auto out = chain_.process(in, frame, now);
   if (!out || is_lost()) return std::nullopt;
   Time late{};
-  for (const EthercatRobot& robot : robots_) late += robot.faults().late;
+  bool twice = false, half = false;
+  for (const EthercatRobot& robot : robots_) {
+    late += robot.faults().late;
+    twice = twice || robot.faults().duplicate;
+    half = half || robot.faults().corrupt;
+  }
   // What was held back is not overtaken: cables do not do that.
-  if (late == Time::zero() && held_count_ == 0) return out;
-  hold(*out, frame, now + late);
+  if (late == Time::zero() && !twice && !half && held_count_ == 0) return out;
+  for (int copies = twice ? 2 : 1; copies > 0; --copies) {
+    hold(*out, half ? frame.first(frame.size() / 2) : frame, now + late);
+  }
   return std::nullopt;
 }
 
@@ -111,7 +120,7 @@ bool EthercatSegment::is_cut(std::size_t cable) const noexcept {
   const bool first = cable == 0, last = cable == robots_.size();
   if (first && !carrier_[static_cast<std::size_t>(Side::kPrimary)]) return true;
   if (last && !carrier_[static_cast<std::size_t>(Side::kSecondary)]) return true;
-  if (!first && robots_[cable - 1].faults().unplugged) return true;
+  if (!first && (robots_[cable - 1].faults().unplugged || robots_[cable - 1].faults().cut_behind)) return true;
   return !last && (robots_[cable].faults().unplugged || robots_[cable].faults().cut);
 }
 

@@ -19,6 +19,7 @@ class EthercatSegment {
   struct Member {
     RobotOptions model;
     ethercat::DeviceSettings device;
+    bool foreign = false;  // from the beginning (NetworkFaults::foreign)
   };
   static constexpr std::size_t kMostRobots = 32;
 
@@ -30,7 +31,8 @@ class EthercatSegment {
   // A frame comes in at one side. What is left in its place goes out at the side that is returned, at once: advance()
   // comes behind that, and before the next frame. Nothing: nothing comes back, or not yet (take_late()).
   std::optional<Side> process(Side in, std::span<std::byte> frame, Time now) noexcept;
-  // Frames that were held back and are due (the fault "late"), until empty; valid until the next call of process().
+  // Frames that were held back and are due (the faults "late", "duplicate", "corrupt"), until empty; valid until the
+  // next call of process().
   struct LateFrame {
     Side out{};
     std::span<const std::byte> bytes;

@@ -24,7 +24,10 @@ std::unique_ptr<Network> open_network(const Arguments& a, const std::vector<Narr
                                                  say.front());
     case Fieldbus::kEthercat: {
       std::vector<EthercatSegment::Member> members;
-      for (std::size_t i = 0; i < a.names.size(); ++i) members.push_back({model_of(a, i), device_of(a, i)});
+      for (std::size_t i = 0; i < a.names.size(); ++i) {
+        const bool foreign = std::ranges::find(a.foreign, a.names[i]) != a.foreign.end();
+        members.push_back({model_of(a, i), device_of(a, i), foreign});
+      }
       return std::make_unique<EthercatNetwork>(members, a.on_loss, a.interface, a.redundant_interface, now, say);
     }
   }

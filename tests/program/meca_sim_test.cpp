@@ -72,6 +72,7 @@ TEST(MecaSim, ExplainsItselfWithExamples) {
   EXPECT_THAT(help.output, HasSubstr("meca-sim --bind eth0 "));
   EXPECT_THAT(help.output, HasSubstr("at 2.5s unplug"));
   EXPECT_THAT(help.output, HasSubstr("Exit codes: 0"));
+  EXPECT_THAT(help.output, HasSubstr("\nclock drift PPM "));
 }
 
 TEST(MecaSim, LeavesWithTwoWhenItsArgumentsAreWrong) {
@@ -168,6 +169,8 @@ TEST(MecaSim, ShowsItsHostWhatIsPressedAndRaised) {
   EXPECT_TRUE(host.until([&] { return host.inputs().safety_status.stop.p_stop2; }));
   EXPECT_EQ(sim.say("release p-stop2"), "ok: P-Stop 2 released; the host has to resume motion\n");
   EXPECT_TRUE(host.until([&] { return host.inputs().safety_status.resettable.p_stop2; }));
+  EXPECT_EQ(sim.say("press e-stop"), "ok: E-Stop pressed\n");
+  EXPECT_TRUE(host.until([&] { return host.inputs().safety_status.stop.e_stop; }));
   EXPECT_EQ(sim.say("raise error 1007"), "ok: the robot is in error\n");
   EXPECT_TRUE(host.until([&] { return host.inputs().robot_status.error_code == 1007; }));
 }
@@ -285,6 +288,8 @@ INSTANTIATE_TEST_SUITE_P(
                             h.run_for(300ms);  // longer than the watchdog
                             return h.originator.running() && h.originator.counters().watchdog_trips == 0;
                           }},
+                    Fault{"power off", false,
+                          [](EipHost& h) { return h.refused > 0 && h.originator.counters().watchdog_trips == 1; }},
                     Fault{"power cycle", false,
                           [](EipHost& h) { return h.refused > 0 && h.originator.counters().watchdog_trips == 1; }}),
     name_of);

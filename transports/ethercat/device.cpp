@@ -8,12 +8,16 @@
 namespace meca::ethercat {
 namespace {
 
-std::vector<std::byte> sii_of(const DeviceSettings& settings) {
-  std::vector<std::byte> image = make_meca500_sii(settings.alias, settings.serial);
-  wire::Writer identity(std::span<std::byte>(image).subspan(2U * sii::kVendor));  // the checksum does not reach so far
+void write_identity(const DeviceSettings& settings, std::span<std::byte> sii_image) noexcept {
+  wire::Writer identity(sii_image.subspan(2U * sii::kVendor));  // the checksum does not reach so far
   identity.u32(settings.vendor);
   identity.u32(settings.product);
   identity.u32(settings.revision);
+}
+
+std::vector<std::byte> sii_of(const DeviceSettings& settings) {
+  std::vector<std::byte> image = make_meca500_sii(settings.alias, settings.serial);
+  write_identity(settings, image);
   return image;
 }
 
@@ -26,6 +30,8 @@ EscSettings esc_settings(const DeviceSettings& settings) {
 // What the application knew before the ESC was without power.
 void forget(DeviceState& s) noexcept {
   s.objects.reset();
+  s.objects.set_number({0x1018, 1}, s.settings.vendor);
+  s.objects.set_number({0x1018, 2}, s.settings.product);
   s.transition.reset();
   s.outputs_arrived = s.fresh = false;
   s.output = {};
@@ -47,7 +53,9 @@ const Esc& Device::esc() const noexcept { return state_->esc; }
 
 void Device::tick(Time now) noexcept {
   DeviceState& s = *state_;
-  s.esc.faults() = {.working_counter = s.faults.working_counter, .lose_mailbox_reads = s.faults.lose_mailbox_replies};
+  s.esc.faults() = {.working_counter = s.faults.working_counter,
+                    .lose_mailbox_reads = s.faults.lose_mailbox_replies,
+                    .clock_drift = s.faults.clock_drift};
   if (s.esc.take_reset()) forget(s);
   s.esc.tick(now);
   s.objects.set_number({0x10F8, 0}, s.esc.system_time(now));
@@ -78,6 +86,14 @@ void Device::power_cycle(Time now) noexcept {
   DeviceState& s = *state_;
   s.esc.power_cycle(now);
   forget(s);
+}
+
+void Device::exchange(std::uint32_t vendor, std::uint32_t product, Time now) noexcept {
+  DeviceState& s = *state_;
+  s.settings.vendor = vendor;
+  s.settings.product = product;
+  write_identity(s.settings, s.esc.sii());
+  power_cycle(now);
 }
 
 DeviceFaults& Device::faults() noexcept { return state_->faults; }

@@ -37,6 +37,7 @@ struct DeviceFaults {
   bool lose_mailbox_replies = false;          // mails are read by the master but the answer's frame bytes are lost
   bool no_mailbox = false;                    // mails are taken and never answered
   bool frozen_inputs = false;                 // the image stands still
+  std::int32_t clock_drift = 0;               // ppm that its clock runs faster than the settings say
 };
 
 struct DeviceCounters {
@@ -73,6 +74,8 @@ class Device {
   void raise_al_error(std::uint16_t code, Time now) noexcept;
   void send_emergency(const Emergency& emergency) noexcept;
   void power_cycle(Time now) noexcept;
+  // Another device stands in its place, just switched on: this vendor and product in SII and 1018h, the rest as it was.
+  void exchange(std::uint32_t vendor, std::uint32_t product, Time now) noexcept;
 
   DeviceFaults& faults() noexcept;
   const DeviceCounters& counters() const noexcept;

@@ -55,6 +55,7 @@ void EscState::show_ports() noexcept {
 }
 
 void EscState::catch_up(Time now) noexcept {
+  follow_drift(now);
   if (sii_busy() && now >= sii_ready) sii_finish();
   check_watchdog(now);
 }
@@ -99,6 +100,7 @@ void Esc::set_al_status(std::uint16_t status, std::uint16_t code) noexcept {
 std::uint16_t Esc::al_status() const noexcept { return state_->u16(reg::kAlStatus); }
 std::uint16_t Esc::station_address() const noexcept { return state_->u16(reg::kStationAddress); }
 EscFaults& Esc::faults() noexcept { return state_->faults; }
+std::span<std::byte> Esc::sii() noexcept { return state_->settings.sii; }
 std::uint8_t Esc::peek(std::uint16_t address) const noexcept { return address < kMemory ? state_->u8(address) : 0; }
 
 }  // namespace meca::ethercat

@@ -33,6 +33,7 @@ struct EscPorts {
 struct EscFaults {
   int working_counter = 0;          // added to the WKC of logical datagrams that it takes part in
   bool lose_mailbox_reads = false;  // a read empties the mailbox of sync manager 1, but bytes and WKC do not arrive
+  std::int32_t clock_drift = 0;     // ppm that its clock runs faster than the settings say, from the next access on
 };
 
 struct EscState;
@@ -92,6 +93,7 @@ class Esc {
   bool take_reset() noexcept;  // "RES" was written to 0040 since the last call: it has done a power_cycle()
 
   EscFaults& faults() noexcept;
+  std::span<std::byte> sii() noexcept;  // the image
 
   // Raw registers, for tests and the scan's pictures; masks do not apply.
   std::uint8_t peek(std::uint16_t address) const noexcept;

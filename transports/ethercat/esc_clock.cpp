@@ -20,13 +20,25 @@ constexpr std::uint64_t plus(std::uint64_t time, std::int64_t ns) noexcept {
 
 std::uint64_t EscState::local_time(Time now) const noexcept {
   const std::int64_t passed = (now - clock_anchor).count();
-  const std::int64_t ppb = std::int64_t{settings.clock_ppm} * 1000 + clock_loop_ppb;
+  const std::int64_t ppb = (std::int64_t{settings.clock_ppm} + clock_drift) * 1000 + clock_loop_ppb;
   // Whole seconds apart, so that nothing overflows.
   const std::int64_t gained = passed / kBillion * ppb + passed % kBillion * ppb / kBillion;
   return plus(plus(clock_anchor_local, passed), gained);
 }
 
 std::uint64_t EscState::system_time(Time now) const noexcept { return local_time(now) + u64(reg::kDcOffset); }
+
+// From where the clock is now, or a change of its speed would count backwards.
+void EscState::anchor_clock(Time now) noexcept {
+  clock_anchor_local = local_time(now);
+  clock_anchor = now;
+}
+
+void EscState::follow_drift(Time now) noexcept {
+  if (clock_drift == faults.clock_drift) return;
+  anchor_clock(now);
+  clock_drift = faults.clock_drift;
+}
 
 void EscState::latch_receive_times() noexcept {
   put(reg::kDcReceiveTimes, 4, received_at_port0);
@@ -62,9 +74,7 @@ void EscState::compare_system_time(Bytes received, Time now) noexcept {
 }
 
 void EscState::reset_clock_loop(Time now) noexcept {
-  // From where the clock is now, or the change of speed would count backwards.
-  clock_anchor_local = local_time(now);
-  clock_anchor = now;
+  anchor_clock(now);
   clock_loop_ppb = 0;
   mean_difference = 0;
   last_comparison.reset();

@@ -100,6 +100,8 @@ struct EscState {
   // ---- esc_clock.cpp
   std::uint64_t local_time(Time now) const noexcept;
   std::uint64_t system_time(Time now) const noexcept;
+  void anchor_clock(Time now) noexcept;
+  void follow_drift(Time now) noexcept;
   void latch_receive_times() noexcept;
   void compare_system_time(Bytes received, Time now) noexcept;
   void reset_clock_loop(Time now) noexcept;
@@ -148,7 +150,8 @@ struct EscState {
   // The local clock: this was its time then, and it runs so much faster than `now`.
   Time clock_anchor{};
   std::uint64_t clock_anchor_local = 0;
-  std::int64_t clock_loop_ppb = 0;  // what the control loop adds to settings.clock_ppm
+  std::int32_t clock_drift = 0;     // as last seen in the faults, ppm
+  std::int64_t clock_loop_ppb = 0;  // what the control loop adds to settings.clock_ppm and the drift
   std::optional<Time> last_comparison;
   std::int64_t mean_difference = 0;
   std::uint64_t received_at_port0 = 0;

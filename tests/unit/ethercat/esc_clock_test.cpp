@@ -139,6 +139,46 @@ TEST_F(EscClock, ResettingTheLoopGivesItsOwnSpeedBack) {
   EXPECT_EQ(esc.system_time(now + 1s) - before, 1'000'100'000u);
 }
 
+// From now on: what a change of speed made of the time before would be a jump.
+TEST_F(EscClock, ADriftChangesItsSpeedAndNotItsTime) {
+  begin_with(10, 0);
+  now = 100s;
+  EXPECT_EQ(read(reg::kDcSystemTime, 8).value(), 100'001'000'000u);
+  esc.faults().clock_drift = 90;
+  EXPECT_EQ(read(reg::kDcSystemTime, 8).value(), 100'001'000'000u);
+  now = 200s;
+  EXPECT_EQ(read(reg::kDcSystemTime, 8).value(), 200'011'000'000u);
+  esc.faults().clock_drift = 0;
+  EXPECT_EQ(read(reg::kDcSystemTime, 8).value(), 200'011'000'000u);
+  now = 300s;
+  EXPECT_EQ(read(reg::kDcSystemTime, 8).value(), 300'012'000'000u);
+}
+
+// What the loop can take up (500 ppm) leaves no difference behind.
+TEST_F(EscClock, ADriftThatItsLoopTakesUpIsSeenForAMomentOneThatIsTooMuchAsLongAsItLasts) {
+  begin_with(0, 0);
+  write(reg::kDcFilterDepths, "00 0C");
+  const auto follow = [&](int milliseconds) {
+    std::int64_t most = 0;
+    for (int i = 0; i < milliseconds; ++i) {
+      now += 1ms;
+      reference(static_cast<std::uint64_t>(now.count()));
+      most = std::max(most, std::abs(difference()));
+    }
+    return most;
+  };
+  follow(1000);
+  esc.faults().clock_drift = 400;
+  EXPECT_GE(follow(1000), 400) << "what 400 ppm are in a cycle, before the loop knows of it";
+  EXPECT_LE(follow(1000), 10);
+  esc.faults().clock_drift = 1000;
+  follow(1000);
+  EXPECT_NEAR(static_cast<double>(difference()), 1000, 100) << "half of it is taken off a cycle: what 500 ppm make";
+  esc.faults().clock_drift = 0;
+  follow(1000);
+  EXPECT_LE(follow(1000), 10);
+}
+
 TEST_F(EscClock, SystemTimeThatIsNotWholeIsNotCompared) {
   write(reg::kDcFilterDepths, "00 0C");
   now = 1ms;

@@ -55,6 +55,13 @@ TEST(EthercatAllocation, NeverHappensWhileRobotsRunLoseTheirMasterAndStartUp) {
   cell.faults(1).cut = true;
   cell.run(1s);
   cell.faults(1).cut = false;
+  cell.faults(0).duplicate = cell.faults(0).corrupt = true;
+  cell.run(100ms);
+  cell.faults(0).duplicate = cell.faults(0).corrupt = false;
+  cell.faults(0).foreign = true;
+  cell.faults(1).clock_drift = 100;
+  cell.run(1s);
+  cell.faults(0).foreign = false;
   cell.run(5s);
   cell.segment.robot(0).robot().power_cycle();
   cell.run(10s);

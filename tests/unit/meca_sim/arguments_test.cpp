@@ -203,10 +203,10 @@ TEST(SimArguments, OfEthercatAreTaken) {
   EXPECT_NE(last.esc.features & ethercat::kFeatureNoLrw, 0);
   EXPECT_TRUE(last.old_sync_manager_types);
 
-  const ethercat::DeviceSettings foreign = device_of(a, 1);
-  EXPECT_NE(foreign.vendor, ethercat::kMecademicVendor);
-  EXPECT_EQ(foreign.esc.clock_ppm, -20);
-  EXPECT_NE(foreign.esc.clock_start, last.esc.clock_start);
+  const ethercat::DeviceSettings middle = device_of(a, 1);
+  EXPECT_EQ(middle.esc.clock_ppm, -20);
+  EXPECT_NE(middle.esc.clock_start, last.esc.clock_start);
+  EXPECT_THAT(a.foreign, ElementsAre("arm2"));
 }
 
 TEST(SimArguments, WithoutAnAliasNoRobotHasOne) {

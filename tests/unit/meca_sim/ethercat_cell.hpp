@@ -25,6 +25,7 @@ class EthercatCell {
     bool ring = false;
     ConnectionLoss on_loss = ConnectionLoss::kStop;
     Time cycle = 1ms;
+    bool dc = false;
   };
 
   EthercatCell() : EthercatCell(Options{}) {}
@@ -98,6 +99,7 @@ class EthercatCell {
     for (std::size_t i = 0; i < options.robots; ++i) settings.robots.push_back({static_cast<std::uint16_t>(i), {}});
     settings.redundant = options.ring;
     settings.cycle = options.cycle;
+    settings.dc = options.dc;
     settings.station.shortest_backoff = 20ms;
     settings.station.longest_backoff = 100ms;
     return settings;

@@ -58,6 +58,29 @@ TEST(EthercatSegment, LosesNobodyAtACutCableOfARing) {
   expect_losses(cell, {0, 0, 0});
 }
 
+TEST(EthercatSegment, LosesNobodyWhenTheCableBackToTheMasterIsCut) {
+  EthercatCell cell({.robots = 2, .ring = true});
+  ASSERT_TRUE(cell.connect());
+  cell.faults(1).cut_behind = true;
+  cell.run(500ms);
+  EXPECT_TRUE(cell.master.ring_open());
+  EXPECT_TRUE(cell.operational(0) && cell.operational(1));
+  cell.faults(1).cut_behind = false;
+  cell.run(500ms);
+  EXPECT_FALSE(cell.master.ring_open());
+  expect_losses(cell, {0, 0});
+}
+
+TEST(EthercatSegment, EndsBehindARobotWhoseCableBehindIsCut) {
+  EthercatCell cell({.robots = 2});
+  ASSERT_TRUE(cell.connect());
+  cell.faults(0).cut_behind = true;
+  ASSERT_TRUE(cell.until([&] { return !cell.operational(1); }, 1s));
+  EXPECT_TRUE(cell.operational(0));
+  cell.faults(0).cut_behind = false;
+  EXPECT_TRUE(cell.connect()) << trouble(cell, 1);
+}
+
 TEST(EthercatSegment, LosesOnlyTheRobotThatIsUnpluggedFromARing) {
   EthercatCell cell({.robots = 3, .ring = true});
   ASSERT_TRUE(cell.connect());
@@ -129,6 +152,69 @@ TEST(EthercatSegment, HoldsFramesBackWithoutLosingThem) {
   EXPECT_EQ(cell.master.counters().lost_frames, before.lost_frames);
   EXPECT_EQ(cell.master.counters().unexpected_frames, before.unexpected_frames);
   EXPECT_TRUE(cell.operational(0));
+}
+
+TEST(EthercatSegment, SendsFramesTwiceOfWhichTheSecondIsDropped) {
+  EthercatCell cell;
+  ASSERT_TRUE(cell.connect());
+  const auto before = cell.master.counters();
+  const std::uint64_t images = cell.master.counters(0).images;
+  cell.faults().duplicate = true;
+  cell.run(100ms);
+  cell.faults().duplicate = false;
+  cell.run(100ms);
+  EXPECT_GE(cell.master.counters().unexpected_frames, before.unexpected_frames + 100);
+  EXPECT_EQ(cell.master.counters().lost_frames, before.lost_frames);
+  EXPECT_NEAR(static_cast<double>(cell.master.counters(0).images - images), 200, 2) << "each image once";
+  EXPECT_TRUE(cell.operational(0));
+}
+
+TEST(EthercatSegment, SendsHalfFramesThatAreNoReplies) {
+  EthercatCell cell;
+  ASSERT_TRUE(cell.connect());
+  const auto before = cell.master.counters();
+  cell.faults().corrupt = true;
+  cell.run(20ms);
+  EXPECT_GE(cell.master.counters().malformed_frames, before.malformed_frames + 19);
+  cell.faults().corrupt = false;
+  EXPECT_TRUE(cell.connect()) << trouble(cell, 0);
+}
+
+TEST(EthercatSegment, HasAForeignDeviceInThePlaceOfARobotThatStartsUpWhenItIsBack) {
+  EthercatCell cell({.robots = 3});
+  ASSERT_TRUE(cell.make_ready());
+  cell.faults(1).foreign = true;
+  ASSERT_TRUE(cell.until([&] { return trouble(cell, 1).find("vendor 0x00000002") != std::string::npos; }, 5s))
+      << trouble(cell, 1);
+  cell.run(2s);
+  EXPECT_TRUE(cell.operational(0) && cell.operational(2)) << "those behind it are reached through it";
+  for (auto& outputs : cell.outputs) outputs.robot_control = {};
+  cell.faults(1).foreign = false;
+  cell.run(10ms);
+  EXPECT_FALSE(cell.segment.robot(1).powered()) << "it starts up";
+  ASSERT_TRUE(cell.connect()) << trouble(cell, 1);
+  EXPECT_FALSE(cell.model(1).inputs().robot_status.activated);
+  EXPECT_EQ(cell.model(1).stops().connection_dropped, StopSignal::kReset) << "it has no memory of a loss";
+}
+
+TEST(EthercatSegment, OfADriftingClockShowsTheDifferenceUntilItIsOver) {
+  EthercatCell cell({.robots = 3, .dc = true});
+  ASSERT_TRUE(cell.connect());
+  const auto difference = [&](std::size_t i) { return cell.master.counters(i).dc_difference_ns; };
+  cell.run(1s);
+  ASSERT_LT(std::abs(difference(1)), 100);
+  cell.faults(1).clock_drift = 1000;
+  cell.run(1s);
+  EXPECT_GT(difference(1), 500) << "more than its loop takes up";
+  EXPECT_LT(std::abs(difference(2)), 100);
+  cell.faults(1).clock_drift = 0;
+  cell.run(1s);
+  EXPECT_LT(std::abs(difference(1)), 100);
+  cell.faults(0).clock_drift = 1000;
+  cell.run(1s);
+  EXPECT_LT(difference(1), -500) << "all others are behind their reference";
+  EXPECT_LT(difference(2), -500);
+  expect_losses(cell, {0, 0, 0});
 }
 
 TEST(EthercatSegment, OfFrozenRobotsGoesOnWithOldInputs) {

@@ -102,7 +102,7 @@ TEST(Script, OfTheExampleIsGood) {
 TEST(Script, OfTheExampleForEthercatIsGood) {
   const Script script = example("faults_ethercat.txt", {Fieldbus::kEthercat, {"arm1", "arm2", "arm3"}});
   EXPECT_THAT(script.mistakes, IsEmpty());
-  EXPECT_EQ(script.lines.size(), 23u);
+  EXPECT_EQ(script.lines.size(), 27u);
 }
 
 }  // namespace

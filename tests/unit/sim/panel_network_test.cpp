@@ -1,6 +1,10 @@
 // The words about the network of a simulated robot: every word once as it is meant and once mistyped, and what it sets.
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
 #include "sim/panel.hpp"
 #include "sim/panel_port.hpp"
 #include "tests/unit/sim/rig.hpp"
@@ -51,10 +55,18 @@ INSTANTIATE_TEST_SUITE_P(OnAnyBus, NetworkWord,
                                          Said{"unplug", "the cable is out", kEthercat},
                                          Said{"power off", "the robot has no power", kEthercat},
                                          Said{"freeze", "no I/O is handled", kEthercat},
-                                         Said{"late 0.5", "answers are late", kEthercat}));
+                                         Said{"late 0.5", "answers are late", kEthercat},
+                                         Said{"duplicate", "what the robot sends comes twice"},
+                                         Said{"duplicate", "what the robot sends comes twice", kEthercat},
+                                         Said{"corrupt", "what the robot sends is too short"},
+                                         Said{"corrupt", "what the robot sends is too short", kEthercat}));
 
 INSTANTIATE_TEST_SUITE_P(OnEthercat, NetworkWord,
                          testing::Values(Said{"cut", "the cable before this robot is cut", kEthercat},
+                                         Said{"cut behind", "the cable behind this robot is cut", kEthercat},
+                                         Said{"clock drift -100", "the clock drifts", kEthercat},
+                                         Said{"foreign on", "another maker's device is in the robot's place",
+                                              kEthercat},
                                          Said{"lose next 3", "the next frames do not come back", kEthercat},
                                          Said{"lose every 200", "some frames do not come back", kEthercat},
                                          Said{"lose mails", "mails of the robot are lost on their way", kEthercat},
@@ -70,9 +82,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Said{"no socket items", "replies have no socket address items"},
                     Said{"foreign address 192.0.2.9:2222", "replies name a foreign address"},
                     Said{"foreign address 255.255.255.255:65535", "replies name a foreign address"},
-                    Said{"stop producing", "no T->O packets"}, Said{"duplicate", "every T->O packet comes twice"},
+                    Said{"stop producing", "no T->O packets"},
                     Said{"stale sequence", "every second T->O packet is stale"},
-                    Said{"corrupt", "T->O packets are too short"},
                     Said{"frozen count", "the sequence count stands still"}));
 
 class MistypedNetworkWord : public testing::TestWithParam<Said> {};
@@ -110,6 +121,15 @@ INSTANTIATE_TEST_SUITE_P(
         Said{"lose", "'lose' wants a second word: next, every, mails; say for example 'lose next N'", kEthercat},
         Said{"lose every -1", "N: found '-1'; expected a whole number from 0 to 1000000", kEthercat},
         Said{"working counter 4", "N: found '4'; expected a whole number from -3 to 3", kEthercat},
+        Said{"clock drift", "'clock drift' wants PPM; say 'clock drift PPM'", kEthercat},
+        Said{"clock drift 0.5", "PPM: found '0.5'; expected a whole number from -1000 to 1000", kEthercat},
+        Said{"clock drift 1001", "PPM: found '1001'; expected a whole number from -1000 to 1000", kEthercat},
+        Said{"clock", "'clock' wants a second word: drift; say for example 'clock drift PPM'", kEthercat},
+        Said{"cut before", "'cut' does not take 'before'; say 'cut'", kEthercat},
+        Said{"foreign",
+             "'foreign' wants a second word: address, on, off; say for example 'foreign address "
+             "A.B.C.D:PORT'",
+             kEthercat},
         Said{"refuse stat 1", "'refuse' does not take 'stat', only open, state", kEthercat},
         Said{"al error", "'al error' wants CODE; say 'al error CODE'", kEthercat},
         Said{"al error 0x1001B", "CODE: found '0x1001b'; expected a whole number from 1 to 65535, or in hex, 0x...",
@@ -131,17 +151,18 @@ const std::string kForEthernetIp =
 
 INSTANTIATE_TEST_SUITE_P(
     OfAnotherBus, MisplacedWord,
-    testing::Values(Said{"cut", kForEthercat}, Said{"heal", kForEthercat}, Said{"lose next 1", kForEthercat},
-                    Said{"lose every 2", kForEthercat}, Said{"lose mails", kForEthercat},
-                    Said{"no mailbox", kForEthercat}, Said{"working counter 1", kForEthercat},
-                    Said{"refuse state 0x25", kForEthercat}, Said{"al error 0x1b", kForEthercat},
-                    Said{"emergency 0xff00", kForEthercat}, Said{"refuse open 0x0106", kForEthernetIp, kEthercat},
-                    Said{"wrong size 200", kForEthernetIp, kEthercat}, Said{"api 20000", kForEthernetIp, kEthercat},
-                    Said{"no socket items", kForEthernetIp, kEthercat},
-                    Said{"foreign address 192.0.2.9:2222", kForEthernetIp, kEthercat},
-                    Said{"stop producing", kForEthernetIp, kEthercat}, Said{"duplicate", kForEthernetIp, kEthercat},
-                    Said{"stale sequence", kForEthernetIp, kEthercat}, Said{"corrupt", kForEthernetIp, kEthercat},
-                    Said{"frozen count", kForEthernetIp, kEthercat}, Said{"close tcp", kForEthernetIp, kEthercat}));
+    testing::Values(
+        Said{"cut", kForEthercat}, Said{"heal", kForEthercat}, Said{"cut behind", kForEthercat},
+        Said{"heal behind", kForEthercat}, Said{"clock drift 20", kForEthercat}, Said{"foreign on", kForEthercat},
+        Said{"foreign off", kForEthercat}, Said{"lose next 1", kForEthercat}, Said{"lose every 2", kForEthercat},
+        Said{"lose mails", kForEthercat}, Said{"no mailbox", kForEthercat}, Said{"working counter 1", kForEthercat},
+        Said{"refuse state 0x25", kForEthercat}, Said{"al error 0x1b", kForEthercat},
+        Said{"emergency 0xff00", kForEthercat}, Said{"refuse open 0x0106", kForEthernetIp, kEthercat},
+        Said{"wrong size 200", kForEthernetIp, kEthercat}, Said{"api 20000", kForEthernetIp, kEthercat},
+        Said{"no socket items", kForEthernetIp, kEthercat},
+        Said{"foreign address 192.0.2.9:2222", kForEthernetIp, kEthercat},
+        Said{"stop producing", kForEthernetIp, kEthercat}, Said{"stale sequence", kForEthernetIp, kEthercat},
+        Said{"frozen count", kForEthernetIp, kEthercat}, Said{"close tcp", kForEthernetIp, kEthercat}));
 
 TEST(NetworkPanel, SetsWhatItsWordsName) {
   Bench bench;
@@ -165,7 +186,9 @@ TEST(NetworkPanel, EndsSomeFaultsByTheirOwnWords) {
 TEST(NetworkPanel, EndsSomeFaultsOfEthercatByTheirOwnWords) {
   Bench bench(kEthercat);
   const NetworkFaults healthy = bench.faults;
-  for (const char* line : {"cut", "lose every 5", "working counter 1", "heal", "lose every 0", "working counter 0"}) {
+  for (const char* line :
+       {"cut", "cut behind", "lose every 5", "working counter 1", "clock drift 20", "foreign on", "heal", "heal behind",
+        "lose every 0", "working counter 0", "clock drift 0", "foreign off"}) {
     EXPECT_THAT(bench.say(line), testing::StartsWith("ok: "));
   }
   EXPECT_EQ(bench.faults, healthy);
@@ -231,12 +254,31 @@ TEST(NetworkPanel, HelpNamesEveryWord) {
                            "lose mails ",
                            "no mailbox ",
                            "working counter N ",
+                           "cut behind ",
+                           "heal behind ",
+                           "clock drift PPM ",
+                           "foreign on ",
+                           "foreign off ",
                            "refuse state CODE ",
                            "al error CODE ",
                            "emergency CODE ",
                            "on EtherNet/IP:",
                            "on EtherCAT:"}) {
     EXPECT_THAT(text, HasSubstr("\n" + std::string(word)));
+  }
+}
+
+TEST(NetworkPanel, HasItsWordsInTheReadme) {
+  std::ifstream file(MECA_SOURCE_DIR "/sim/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream help(panel_help());
+  std::string line;
+  while (std::getline(help, line) && !line.starts_with("and with a network in between")) continue;
+  ASSERT_TRUE(help) << "the heading of the words about networks is another one now";
+  while (std::getline(help, line)) {
+    const std::string words = line.substr(0, line.find("  "));
+    if (words.ends_with(':')) continue;  // the heading of a bus
+    EXPECT_THAT(readme, HasSubstr("`" + words + "`"));
   }
 }
 
