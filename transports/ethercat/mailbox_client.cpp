@@ -1,6 +1,7 @@
 #include "transports/ethercat/mailbox_client.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace meca::ethercat {
 namespace {
@@ -96,7 +97,6 @@ std::optional<Access> MailboxClient::next(Time now) noexcept {
 
 void MailboxClient::answered(std::uint16_t working_counter, Bytes data, Time now) noexcept {
   if (step_ == Step::kWrite) return wrote(working_counter, now);
-  if (step_ == Step::kRead && working_counter == 0) return go(Step::kStatus, now);  // emptied in between
   constexpr std::size_t kSizes[] = {0, 1, kMailboxSize, 2, 0, 2};
   if (working_counter == 0 || data.size() < kSizes[static_cast<std::size_t>(step_)]) return lost(now);
   heard_ = true;
@@ -112,6 +112,7 @@ void MailboxClient::answered(std::uint16_t working_counter, Bytes data, Time now
     case Step::kRepeated:
       return repeat_read(u8_at(data, 0), u8_at(data, 1), now);
     case Step::kRepeat:
+      repeat_deadline_ = now + timeouts_.request;
       return go(Step::kRepeated, now);
   }
 }
@@ -130,7 +131,6 @@ void MailboxClient::status_read(std::uint8_t status, Time now) noexcept {
   if (draining_) return done();
   if (maybe_taken_) {
     ++counters_.mailbox_repeats;
-    repeat_deadline_ = now + timeouts_.request;
     return go(Step::kFindRepeat, now);
   }
   go(written_ ? Step::kStatus : Step::kWrite, now + kPollPeriod);
@@ -188,7 +188,7 @@ bool MailboxClient::coe_received(Bytes payload) noexcept {
 
 void MailboxClient::lost(Time now) noexcept {
   ++counters_.lost_accesses;
-  if (step_ == Step::kWrite) maybe_written_ = true;
+  if (step_ == Step::kWrite && !std::exchange(maybe_written_, true)) deadline_ = now + timeouts_.response;
   if (step_ == Step::kRead) maybe_taken_ = true;
   go(step_ == Step::kRead ? Step::kStatus : step_, now);
 }

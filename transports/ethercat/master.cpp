@@ -14,7 +14,7 @@ constexpr std::string_view kLookedThrough = "the chain is being looked through";
 constexpr std::string_view kNotLookedThrough =
     "the ring is open before the first device, and robots are looked for from there; check the cable there";
 constexpr Time kLeastSilence = std::chrono::milliseconds(100);
-constexpr unsigned kMissesToSay = 10, kUnequalPauses = 4;
+constexpr unsigned kMissesToSay = 10, kUnevenFrames = 4;
 
 StationSettings station_settings(const MasterSettings& settings, std::size_t robot) {
   StationSettings out = settings.station;
@@ -60,6 +60,8 @@ void MasterState::give_up_overdue(Time now) noexcept {
       dispatch(*frame, Bytes(frame->merged).first(frame->size), now);
     else
       lost(*frame, now);
+    uneven_frames = kUnevenFrames;
+    if (frame->use == InFlight::Use::kService) next_service = now + unequal_pause();
     in_flight.release(*frame);
   }
   // In cycles, not in time: while we stood still ourselves nobody could answer.
@@ -107,11 +109,17 @@ void MasterState::out_of_reach(std::string_view why, Time now) noexcept {
 
 void MasterState::dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept {
   DatagramWalk<const std::byte> walk(reply);
+  // One copy of two: what nobody counted there may have been counted in the other, which is lost.
+  const bool half = frame.arrived < frame.awaited;
   if (frame.use == InFlight::Use::kService) service_in_flight = false;
   for (std::size_t i = 0; i < frame.count; ++i) {
     const auto datagram = walk.next();
     if (!datagram) return;
     const Purpose& purpose = frame.datagrams[i].purpose;
+    if (half && (datagram->working_counter() == 0 || purpose.kind == Purpose::Kind::kChainState)) {
+      if (frame.use == InFlight::Use::kService) service_lost(purpose, now);
+      continue;
+    }
     if (frame.use == InFlight::Use::kCyclic)
       cyclic_reply(frame, purpose, datagram->working_counter(), datagram->data(), now);
     else
@@ -122,9 +130,19 @@ void MasterState::dispatch(const InFlight::Frame& frame, Bytes reply, Time now) 
 void MasterState::lost(const InFlight::Frame& frame, Time now) noexcept {
   if (frame.use == InFlight::Use::kCyclic) return;
   service_in_flight = false;
-  // What is lost at a regular beat is not to be met by it again and again.
-  next_service = now + settings.service_period * (++service_losses % kUnequalPauses);
   for (std::size_t i = 0; i < frame.count; ++i) service_lost(frame.datagrams[i].purpose, now);
+}
+
+// What is lost at a regular beat must not be met by it again and again: from a lost answer of a mailbox to its
+// repetition it is five more frames, and any regular distance can bring that one into the beat too. So after a loss no
+// distance tells the next one (a linear congruential generator, Numerical Recipes 7.1), and they reach over two cycles,
+// for the frames of the cycles count in the beat.
+Time MasterState::unequal_pause() noexcept {
+  constexpr unsigned kMultiplier = 1'664'525, kIncrement = 1'013'904'223, kGoodBits = 16;
+  constexpr Time::rep kLeastChoice = 4;
+  const Time::rep choice = std::max(kLeastChoice, 2 * (settings.cycle / settings.service_period));
+  dice = dice * kMultiplier + kIncrement;
+  return settings.service_period * (static_cast<Time::rep>(dice >> kGoodBits) % choice);
 }
 
 Master::Master(const MasterSettings& settings) : state_(std::make_unique<MasterState>(settings)) {}

@@ -21,6 +21,10 @@ constexpr std::uint8_t kClearFrom = 128;
 Bytes MasterState::service_frame(Time now) noexcept {
   if (service_in_flight || now < next_service) return {};
   next_service = now + settings.service_period;
+  if (uneven_frames > 0) {
+    --uneven_frames;
+    next_service += unequal_pause();
+  }
   look_after_scan(now);
   for (Robot& robot : robots) robot.station.tick(now);
   if (!in_flight.begin(InFlight::Use::kService, cycle)) return {};

@@ -67,6 +67,7 @@ struct MasterState {
   void give_up_overdue(Time now) noexcept;
   void dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept;
   void lost(const InFlight::Frame& frame, Time now) noexcept;
+  Time unequal_pause() noexcept;
   void missed_a_copy(const InFlight::Frame& frame) noexcept;
   void ring_is(bool open, std::size_t reached_from_primary) noexcept;
   void out_of_reach(std::string_view why, Time now) noexcept;
@@ -130,8 +131,10 @@ struct MasterState {
 
   // Service
   bool service_in_flight = false, both_ports = true, both_ports_in_service = true, scan_wanted = false, closing = false;
-  Time next_service{}, next_scan{};
-  unsigned service_losses = 0;
+  Time next_service{}, next_scan{}, scan_pause{};
+  std::uint32_t unreadable_life = 0;  // of the first device that the last scan could not read
+  unsigned uneven_frames = 0;         // that leave at unequal distances yet, after a loss
+  std::uint32_t dice = 1;             // of unequal_pause()
   std::size_t first_robot = 0;
 };
 

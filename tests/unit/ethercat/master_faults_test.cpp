@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "tests/unit/ethercat/master_segment.hpp"
 
 namespace meca::ethercat::test {
@@ -38,28 +36,6 @@ TEST(MasterFaults, ASingleLostFrameIsCountedAndNothingElse) {
   EXPECT_TRUE(segment.all_operational());
   EXPECT_EQ(segment.master().counters(0).losses, 0u);
   EXPECT_EQ(segment.master().counters().scans, 1u);
-}
-
-class LostRegularly : public testing::TestWithParam<unsigned> {};
-
-TEST_P(LostRegularly, ItStillBecomesOperationalAndStaysIt) {
-  Segment segment(settings_for(3));
-  segment.fate = [](std::size_t frame) { return Fate{.lost = frame % GetParam() == 0}; };
-  ASSERT_TRUE(segment.start(60s)) << segment.master().trouble(0);
-  segment.run(2s);
-  EXPECT_TRUE(segment.all_operational());
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(segment.master().counters(i).losses, 0u);
-  EXPECT_GT(segment.master().counters().lost_frames, 0u);
-}
-INSTANTIATE_TEST_SUITE_P(Every, LostRegularly, testing::Values(4, 5, 7, 10, 15, 50));
-
-TEST(MasterFaults, OneFrameInFiveLostAtRandomDoesNotKeepRobotsFromOperating) {
-  Segment segment(settings_for(3));
-  std::mt19937 random(1);
-  segment.fate = [&](std::size_t) { return Fate{.lost = random() % 5 == 0}; };
-  ASSERT_TRUE(segment.start(60s)) << segment.master().trouble(0);
-  segment.run(5s);
-  EXPECT_TRUE(segment.all_operational());
 }
 
 TEST(MasterFaults, DoubledFramesAreDroppedAndCounted) {
