@@ -1,12 +1,14 @@
 // A robot that answers anything, at any time: the station writes nothing but what its way up needs, asks for OP only
 // after process data has run, and keeps what its headers promise. Input: one byte of settings, then steps of one kind
 // byte and what it needs, until they run out. Most steps are answers of a device that knows its business, so that every
-// phase is reached; the others spoil one.
+// phase is reached; the others spoil one. With bit 7 of the settings the steps are transfers of values of any size,
+// which a station makes only short ones of.
 #include <cstdio>
 #include <cstdlib>
 
 #include "tests/fuzz/source.hpp"
 #include "tests/unit/ethercat/station_fake.hpp"
+#include "transports/ethercat/sdo_client.hpp"
 #include "transports/ethercat/station.hpp"
 
 namespace {
@@ -169,11 +171,112 @@ class Bench {
   int cycles_ = 0;
 };
 
+// A client of objects in place of the station. The first value that it writes, and nothing but losses on the way, is
+// in the object when it is done.
+class Transfers {
+ public:
+  explicit Transfers(std::uint8_t choice) {
+    device_.set_status(static_cast<std::uint16_t>(AlState::kPreop), 0);
+    device_.repeats_mails = (choice & 0x40) == 0;
+  }
+
+  void step(Source& source) {
+    switch (source.take<std::uint8_t>() % 8) {
+      case 0:
+        for (int n = source.take<std::uint8_t>(); n >= 0; --n) exchange();
+        break;
+      case 1:
+        honest_ = transfers_++ == 0;
+        written_.assign(source.take<std::uint16_t>() % (SdoClient::kMostValue + 2), std::byte{0x5A});
+        client_.download(kObject, written_, now_);
+        break;
+      case 2:
+        honest_ = false;
+        ++transfers_;
+        client_.upload({kObject.index, source.take<std::uint8_t>()}, source.take<std::uint8_t>() % 2 != 0, now_);
+        break;
+      case 3:
+        if (look()) client_.lost(now_);
+        break;
+      case 4:
+        if (const auto access = look()) {
+          device_.access(*access);
+          client_.lost(now_);
+        }
+        break;
+      case 5: {
+        honest_ = false;
+        const std::size_t at = source.take<std::uint8_t>();
+        exchange(at, static_cast<std::byte>(source.take<std::uint8_t>()));
+        break;
+      }
+      case 6: {
+        honest_ = false;
+        ++transfers_;
+        const auto type = source.take<std::uint8_t>();
+        device_.post(type % 16, source.take_bytes(source.take<std::uint8_t>() % 123));
+        break;
+      }
+      case 7:
+        now_ += std::chrono::milliseconds(source.take<std::uint16_t>());
+        break;
+    }
+    check();
+  }
+
+ private:
+  static constexpr SdoAddress kObject{0x2F00, 0};
+
+  std::optional<Access> look() {
+    now_ += std::chrono::microseconds(200);
+    client_.tick(now_);
+    const auto access = client_.next(now_);
+    if (!access) return access;
+    require(access->size > 0 && access->size <= Access::kMost, "an access of an impossible size");
+    require(access->address == 0x1000 || access->address == 0x1080 || access->address == 0x080D ||
+                access->address == 0x080E,
+            "an access that is not to the mailbox");
+    return access;
+  }
+  void exchange(std::size_t spoil_at = Access::kMost, std::byte bits = {}) {
+    const auto access = look();
+    if (!access) return;
+    auto answer = device_.access(*access);
+    if (spoil_at < answer.data.size()) answer.data[spoil_at] ^= bits;
+    client_.answered(answer.working_counter, answer.data, now_);
+  }
+  void check() {
+    const auto outcome = client_.outcome();
+    require(client_.value().size() <= SdoClient::kMostValue, "a value that is longer than there is room for");
+    require(outcome != AccessMachine::Outcome::kFailed || !client_.trouble().view().empty(), "no word about it");
+    if (!honest_ || outcome != AccessMachine::Outcome::kDone) return;
+    ByteVector now;
+    require(device_.dictionary.read(kObject, false, now) == 0 && now == written_, "done, and another value");
+  }
+
+  FakeDevice device_;
+  StationCounters counters_;
+  MailboxClient mailbox_{{std::chrono::milliseconds(100), std::chrono::seconds(2)}, counters_};
+  SdoClient client_{mailbox_, counters_};
+  Time now_{std::chrono::seconds(1)};
+  ByteVector written_;
+  int transfers_ = 0;
+  bool honest_ = false;
+};
+
+template <class World>
+void run(World world, Source& source) {
+  while (!source.empty()) world.step(source);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Source source(data, size);
-  Bench bench(source.take<std::uint8_t>());
-  while (!source.empty()) bench.step(source);
+  const auto choice = source.take<std::uint8_t>();
+  if ((choice & 0x80) != 0)
+    run(Transfers(choice), source);
+  else
+    run(Bench(choice), source);
   return 0;
 }

@@ -45,6 +45,16 @@ void MailboxClient::drain(Time now) noexcept {
 }
 
 void MailboxClient::request(Bytes sdo, Time now) noexcept {
+  answered_ = true;
+  begin_mail(sdo, now);
+}
+
+void MailboxClient::notify(Bytes sdo, Time now) noexcept {
+  answered_ = false;
+  begin_mail(sdo, now);
+}
+
+void MailboxClient::begin_mail(Bytes sdo, Time now) noexcept {
   begin();
   draining_ = heard_ = written_ = maybe_written_ = maybe_taken_ = reply_lost_ = false;
   counter_ = next_mailbox_counter(counter_);
@@ -124,6 +134,7 @@ void MailboxClient::wrote(std::uint16_t working_counter, Time now) noexcept {
   written_ = working_counter != 0;
   if (written_) deadline_ = now + timeouts_.response;
   go(Step::kStatus, now);
+  if (written_ && !answered_) done();
 }
 
 void MailboxClient::status_read(std::uint8_t status, Time now) noexcept {
@@ -165,7 +176,7 @@ void MailboxClient::mail_read(Bytes memory, Time now) noexcept {
     return;
   }
   if (mail->header.type != static_cast<std::uint8_t>(MailboxType::kCoe)) return;
-  if (coe_received(mail->payload) && !draining_ && (written_ || maybe_written_)) done();
+  if (coe_received(mail->payload) && !draining_ && answered_ && (written_ || maybe_written_)) done();
 }
 
 // True for a mail of the SDO services. Emergencies come whenever they want.

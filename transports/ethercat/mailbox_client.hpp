@@ -27,6 +27,8 @@ class MailboxClient final : public AccessMachine {
   // Sends an SDO request (`sdo`: what stands after the CoE header, at most kMost bytes), done with the next mail of the
   // SDO services.
   void request(Bytes sdo, Time now) noexcept;
+  // Sends an SDO service that nobody answers (an abort): done when the device has it in its mailbox.
+  void notify(Bytes sdo, Time now) noexcept;
   // The mail was none that answers the request: done with the next one.
   void wait_for_another(Time now) noexcept;
 
@@ -52,6 +54,7 @@ class MailboxClient final : public AccessMachine {
     kRepeat,      // request it
     kRepeated,    // wait for the acknowledge
   };
+  void begin_mail(Bytes sdo, Time now) noexcept;
   void wrote(std::uint16_t working_counter, Time now) noexcept;
   void status_read(std::uint8_t status, Time now) noexcept;
   void mail_read(Bytes memory, Time now) noexcept;
@@ -65,10 +68,10 @@ class MailboxClient final : public AccessMachine {
   Timeouts timeouts_;
   StationCounters& counters_;
   Step step_ = Step::kStatus;
-  bool draining_ = false, heard_ = false;
-  bool written_ = false;        // the mail lies in sync manager 0, or did
-  bool maybe_written_ = false;  // a writing of it was lost
-  bool maybe_taken_ = false;    // a reading of sync manager 1 was lost
+  bool draining_ = false, answered_ = true, heard_ = false;  // answered: the mail is one that the device answers
+  bool written_ = false;                                     // the mail lies in sync manager 0, or did
+  bool maybe_written_ = false;                               // a writing of it was lost
+  bool maybe_taken_ = false;                                 // a reading of sync manager 1 was lost
   bool reply_lost_ = false;
   std::uint8_t counter_ = 0;
   std::array<std::byte, kMailboxSize> out_{}, in_{};

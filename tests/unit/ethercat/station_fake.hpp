@@ -246,8 +246,9 @@ class FakeDevice {
       case SdoMessage::Kind::kUploadSegmentRequest:
         return send_segment(request);
       case SdoMessage::Kind::kDownloadRequest:
-        if (const auto code = dictionary.write(request.address, request.data)) return abort(request, code);
-        return post_sdo(reply_to(request, SdoMessage::Kind::kDownloadResponse));
+        return begin_download(request);
+      case SdoMessage::Kind::kDownloadSegmentRequest:
+        return take_segment(request);
       default:
         return abort(request, static_cast<std::uint32_t>(SdoAbort::kCommand));
     }
@@ -282,9 +283,27 @@ class FakeDevice {
     post_sdo(reply);
   }
 
+  void begin_download(const SdoMessage& request) {
+    download_.assign(request.data.begin(), request.data.end());
+    downloading_ = request;
+    if (download_.size() < request.size) return post_sdo(reply_to(request, SdoMessage::Kind::kDownloadResponse));
+    finish_download(reply_to(request, SdoMessage::Kind::kDownloadResponse));
+  }
+  void take_segment(const SdoMessage& request) {
+    download_.insert(download_.end(), request.data.begin(), request.data.end());
+    const auto reply = reply_to(request, SdoMessage::Kind::kDownloadSegmentResponse);
+    request.last ? finish_download(reply) : post_sdo(reply);
+  }
+  void finish_download(const SdoMessage& reply) {
+    const auto code = download_.size() == downloading_.size ? dictionary.write(downloading_.address, download_)
+                                                            : static_cast<std::uint32_t>(SdoAbort::kLength);
+    code != 0 ? abort(downloading_, code) : post_sdo(reply);
+  }
+
   std::array<std::byte, 0x3000> memory_{};
   std::deque<ByteVector> outbox_;
-  ByteVector last_mail_, upload_;
+  ByteVector last_mail_, upload_, download_;
+  SdoMessage downloading_;  // without its data
   std::size_t sent_ = 0;
   std::uint8_t counter_ = 0, last_counter_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,8 +27,9 @@ inline ByteVector in_mailbox(std::string_view hex) {
 
 class MailboxScript {
  public:
-  std::deque<std::vector<ByteVector>> answers;  // to the first mail, to the second, ..
-  std::vector<ByteVector> written;              // mails, without what fills them up
+  std::deque<std::vector<ByteVector>> answers;            // to the first mail, to the second, ..
+  std::function<std::optional<ByteVector>(Bytes)> serve;  // answers mails for which there is nothing in `answers`
+  std::vector<ByteVector> written;                        // mails, without what fills them up
   std::deque<ByteVector> outbox;
   std::size_t full_for = 0;    // so many writes meet a full mailbox
   bool one_at_a_time = false;  // takes no mail out of its mailbox before its last answer was read
@@ -64,7 +66,10 @@ class MailboxScript {
     if (one_at_a_time && !outbox.empty()) return std::exchange(full_, true) ? 0 : 1;
     const std::size_t length = 6 + std::to_integer<std::size_t>(memory[0]);
     written.emplace_back(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(length));
-    if (answers.empty()) return 1;
+    if (answers.empty()) {
+      if (auto answer = serve ? serve(written.back()) : std::nullopt) outbox.push_back(std::move(*answer));
+      return 1;
+    }
     for (auto& mail : answers.front()) outbox.push_back(std::move(mail));
     answers.pop_front();
     return 1;

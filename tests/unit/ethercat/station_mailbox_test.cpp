@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <utility>
 
 #include "tests/unit/ethercat/station_mailbox_script.hpp"
 #include "transports/ethercat/mailbox_client.hpp"
@@ -135,6 +136,54 @@ TEST(StationMailbox, WritesALostMailAgainWithTheSameCounter) {
   ASSERT_EQ(rig.run(lose(0x1000, Loss::kReply)), Outcome::kDone);
   ASSERT_EQ(rig.device.written.size(), 2u);
   EXPECT_EQ(rig.device.written[0], rig.device.written[1]);
+}
+
+// Once the time to take a mail went on for it, though it may have been there all along: 100 ms in which its answer was
+// read and lost, and the way began from INIT.
+TEST(StationMailbox, GivesADeviceThatMayHaveTheMailTheTimeToAnswerIt) {
+  MailboxRig rig;
+  rig.device.one_at_a_time = true;
+  rig.device.answers = {{in_mailbox(kReply)}};
+  rig.request();
+  auto write = lose(0x1000, Loss::kReply);
+  int reads = 30;
+  const auto outcome = rig.run([&](const Access& a) {
+    if (a.address == 0x1080 && reads-- > 0) return Loss::kReply;
+    return write(a);
+  });
+  EXPECT_EQ(outcome, Outcome::kDone) << rig.trouble();
+  EXPECT_EQ(rig.counters.mailbox_repeats, 30u);
+  EXPECT_GT(rig.now, 1s + 100ms);
+}
+
+// Of a ring, the copy of a frame that passed no device.
+TEST(StationMailbox, AsksForAMailWhoseReadingNobodyCounted) {
+  struct OneUncounted {
+    MailboxScript& device;
+    bool once = true;
+    MailboxScript::Answer access(const Access& access) {
+      auto answer = device.access(access);
+      if (access.address == 0x1080 && std::exchange(once, false)) return {0, ByteVector(access.size)};
+      return answer;
+    }
+  };
+  MailboxRig rig;
+  rig.device.answers = {{in_mailbox(kReply)}};
+  rig.request();
+  OneUncounted device{rig.device};
+  ASSERT_EQ(station_test::run(rig.client, device, rig.now), Outcome::kDone) << rig.trouble();
+  EXPECT_EQ(rig.counters.mailbox_repeats, 1u);
+  EXPECT_EQ(rig.device.written.size(), 1u);
+}
+
+TEST(StationMailbox, TellsWithoutWaitingForAnAnswer) {
+  for (const Loss how : {Loss::kNothing, Loss::kRequest, Loss::kReply}) {
+    MailboxRig rig;
+    rig.client.notify(from_hex("80 00 2F 00 00 00 03 05"), rig.now);
+    ASSERT_EQ(rig.run(lose(0x1000, how)), Outcome::kDone);
+    EXPECT_EQ(rig.device.written.front(), from_hex("0A 00 00 00 00 13 00 20 80 00 2F 00 00 00 03 05"));
+    EXPECT_LT(rig.now, 1s + 100ms);
+  }
 }
 
 TEST(StationMailbox, AsksForAMailThatWasLostOnItsWayToUs) {
