@@ -8,7 +8,7 @@ namespace {
 
 constexpr Time kAlStatusPeriod = std::chrono::milliseconds(100), kErrorsPeriod = std::chrono::seconds(1),
                kDifferencePeriod = std::chrono::milliseconds(100), kScanPause = std::chrono::milliseconds(100),
-               kUnreadablePause = std::chrono::seconds(1);
+               kLongestScanPause = std::chrono::seconds(1);
 constexpr std::uint16_t kAlStatusSize = 6;  // status, reserved, code
 // A service frame does not grow beyond it, however many want something: 700 bytes are 56 us of a 100 Mbit/s line.
 constexpr std::size_t kMostServiceBytes = 560;
@@ -54,12 +54,16 @@ void MasterState::look_after_scan(Time now) noexcept {
   }
   scan.tick(now);
   if (!scan.take_end()) return;
-  next_scan = now + kScanPause;
   bind(now);
-  if (!std::ranges::all_of(scan.devices(), &ChainScan::Device::identified)) {
-    next_scan = now + kUnreadablePause;
-    scan_wanted = true;
-  }
+  // Who could not be read is asked again, less and less often as long as it is the same one: it may only have been
+  // switched off and on meanwhile, and then it comes as another.
+  const auto unreadable = std::ranges::find(scan.devices(), false, &ChainScan::Device::identified);
+  const bool all_read = unreadable == scan.devices().end();
+  const std::uint32_t life = all_read ? 0 : unreadable->life;
+  scan_pause = life != 0 && life == unreadable_life ? std::min(2 * scan_pause, kLongestScanPause) : kScanPause;
+  unreadable_life = life;
+  next_scan = now + scan_pause;
+  scan_wanted = scan_wanted || !all_read;
 }
 
 void MasterState::add_robots(Time now) noexcept {

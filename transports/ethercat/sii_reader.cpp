@@ -9,6 +9,8 @@ namespace {
 
 // Register 0502 (ETG.1000.4, 6.4; spec 5.4).
 constexpr std::uint16_t kReadCommand = 0x0100, kEightBytes = 0x0040, kCommandError = 0x2000, kBusy = 0x8000;
+// So many answers in a row that nobody counted: nobody has the address any more, a device that was switched off.
+constexpr unsigned kMostUncounted = 20;
 
 }  // namespace
 
@@ -16,18 +18,20 @@ void SiiReader::start(Time now) noexcept {
   identity_ = {};
   trouble_ = {};
   refused_ = heard_ = busy_ = false;
+  uncounted_ = 0;
   at_ = 0;
   deadline_ = now + timeout_;
   go(Step::kForce, now);
 }
 
 void SiiReader::tick(Time now) noexcept {
-  if (step_ == Step::kIdle || done() || failed() || now < deadline_) return;
+  const bool gone = uncounted_ > kMostUncounted;
+  if (step_ == Step::kIdle || done() || failed() || (now < deadline_ && !gone)) return;
   step_ = Step::kFailed;
-  trouble_ = !heard_    ? "it does not answer when its SII is read; check its power and the cables to it"
-             : refused_ ? "its SII refuses to be read; restart it"
-             : busy_    ? "its SII stays busy; restart it"
-                        : "its SII does not give what is asked for; restart it";
+  trouble_ = !heard_ || gone ? "it does not answer when its SII is read; check its power and the cables to it"
+             : refused_      ? "its SII refuses to be read; restart it"
+             : busy_         ? "its SII stays busy; restart it"
+                             : "its SII does not give what is asked for; restart it";
 }
 
 std::optional<Access> SiiReader::next(Time now) noexcept {
@@ -59,8 +63,12 @@ std::optional<Access> SiiReader::next(Time now) noexcept {
 }
 
 void SiiReader::answered(std::uint16_t working_counter, Bytes data, Time now) noexcept {
-  if (working_counter == 0) return;
+  if (working_counter == 0) {
+    ++uncounted_;
+    return;
+  }
   heard_ = true;
+  uncounted_ = 0;
   switch (step_) {
     case Step::kIdle:
     case Step::kDone:

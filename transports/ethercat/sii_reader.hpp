@@ -54,7 +54,8 @@ class SiiReader {
   Time timeout_, due_{}, deadline_{};
   Step step_ = Step::kIdle;
   bool refused_ = false, heard_ = false, busy_ = false;
-  std::uint16_t at_ = 0;  // word
+  unsigned uncounted_ = 0;  // answers in a row that nobody counted
+  std::uint16_t at_ = 0;    // word
   std::array<std::byte, 2 * SiiIdentity::kWords> words_{};
   std::array<std::byte, 6> out_{};
   SiiIdentity identity_;

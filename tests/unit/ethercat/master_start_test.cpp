@@ -333,6 +333,38 @@ TEST(MasterStart, WithoutAnybodyItSaysThatNobodyAnswersAndFindsThemWhenTheyCome)
   EXPECT_TRUE(segment.start());
 }
 
+// Once it took another 1.8 s: half a second until its SII was given up, and a second until the chain was looked through
+// again.
+TEST(MasterStart, ARobotThatIsRestartedWhileTheChainIsLookedThroughIsWaitedForNoLonger) {
+  for (Time when{}; when < 60ms; when += 1ms) {
+    Segment segment(settings_for(3));
+    segment.run(when);
+    segment.device(1).power_cycle(segment.now());
+    segment.run(20ms);
+    EXPECT_TRUE(segment.start(600ms)) << when.count() << ": " << segment.master().trouble(1);
+  }
+}
+
+TEST(MasterStart, ADeviceThatCannotBeReadIsAskedLessAndLessOften) {
+  std::vector<DeviceSettings> devices(2);
+  devices[1].esc.sii_busy = 1h;
+  Segment segment(settings_for(1), devices);
+  std::vector<Time> scans;
+  segment.every_cycle = [&](Segment& s) {
+    if (s.master().counters().scans > scans.size()) scans.push_back(s.now());
+  };
+  segment.run(10s);
+  EXPECT_TRUE(segment.all_operational());
+  ASSERT_GT(scans.size(), 6u);
+  for (std::size_t i = 2; i < scans.size(); ++i) EXPECT_GE(scans[i] - scans[i - 1], scans[i - 1] - scans[i - 2] - 10ms);
+  EXPECT_GE(scans.back() - scans[scans.size() - 2], 1s);
+  segment.device(1).power_cycle(segment.now());  // another one, perhaps with an SII that can be read
+  segment.run(600ms);
+  const auto before = segment.master().counters().scans;
+  segment.run(800ms);
+  EXPECT_GT(segment.master().counters().scans, before);
+}
+
 TEST(MasterStart, SlowSiiWithEightBytesAReadIsReadToo) {
   std::vector<DeviceSettings> devices(2);
   for (DeviceSettings& device : devices) {

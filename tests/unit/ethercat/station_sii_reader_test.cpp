@@ -22,13 +22,16 @@ class FakeSii {
  public:
   ByteVector image = make_meca500_sii(0x0102, 4711);
   bool eight_bytes = false;
-  int busy_reads = 0;  // so many readings of the status see it busy after a command
-  int refusals = 0;    // so many commands are refused
-  bool deaf = false;   // commands are not taken
+  int busy_reads = 0;                                      // so many readings of the status see it busy after a command
+  int refusals = 0;                                        // so many commands are refused
+  bool deaf = false;                                       // commands are not taken
+  std::size_t gone_from = 1'000'000, uncounted_every = 0;  // accesses that nobody counts
   std::vector<int> owners;
   int commands = 0, clears = 0;
 
   std::pair<std::uint16_t, ByteVector> access(const Access& access) {
+    const std::size_t n = accesses_++;
+    if (n >= gone_from || (uncounted_every != 0 && n % uncounted_every == 0)) return {0, ByteVector(access.size)};
     if (access.address == reg::kSiiOwner) owners.push_back(std::to_integer<int>(access.data[0]));
     if (access.address != reg::kSiiControl) return {1, ByteVector(access.size)};
     return access.write ? write(access.data) : std::pair<std::uint16_t, ByteVector>{1, status(access.size)};
@@ -59,7 +62,7 @@ class FakeSii {
     out.resize(size);
     return out;
   }
-  std::size_t address_ = 0;
+  std::size_t address_ = 0, accesses_ = 0;
   int busy_ = 0;
   bool error_ = false;
 };
@@ -174,6 +177,25 @@ TEST(StationSiiReader, SaysWhatStandsInTheWay) {
   EXPECT_THAT(trouble_of([](SiiRig& r) { r.device.busy_reads = 1'000'000; }), StartsWith("its SII stays busy"));
   EXPECT_THAT(trouble_of([](SiiRig& r) { r.device.refusals = 1'000'000; }), StartsWith("its SII refuses to be read"));
   EXPECT_THAT(trouble_of([](SiiRig& r) { r.device.deaf = true; }), StartsWith("its SII does not give what is asked"));
+}
+
+// A device that is switched off has lost its address: frames come back, and nobody has counted in them.
+TEST(StationSiiReader, DoesNotWaitForADeviceThatIsGone) {
+  for (const std::size_t gone_from : {0u, 10u}) {
+    SiiRig rig;
+    rig.device.gone_from = gone_from;
+    rig.run();
+    ASSERT_TRUE(rig.reader.failed());
+    EXPECT_THAT(std::string(rig.reader.trouble()), StartsWith("it does not answer when its SII is read"));
+    EXPECT_EQ(rig.count, gone_from + 21);
+  }
+}
+
+TEST(StationSiiReader, IsNotDisturbedByAFewAnswersThatNobodyCounted) {
+  SiiRig rig;
+  rig.device.uncounted_every = 2;
+  rig.run();
+  EXPECT_TRUE(rig.reader.done()) << rig.reader.trouble();
 }
 
 TEST(StationSiiReader, WantsTheSameUntilItIsAnswered) {
