@@ -48,7 +48,6 @@ MasterState::MasterState(const MasterSettings& from)
     robots.emplace_back(settings.robots[i], station_settings(settings, i));
     robots.back().trouble = kLookedThrough;
   }
-  chain.reserve(ChainScan::kMostDevices);
 }
 
 void MasterState::give_up_overdue(Time now) noexcept {
@@ -258,7 +257,6 @@ std::string_view Master::trouble(std::size_t index) const noexcept {
 const RobotCounters& Master::counters(std::size_t robot) const noexcept { return state_->robots[robot].counters; }
 const MasterCounters& Master::counters() const noexcept { return state_->counters; }
 const Histogram& Master::round_trip() const noexcept { return state_->round_trip; }
-std::span<const ChainDevice> Master::chain() const noexcept { return state_->chain; }
 bool Master::ring_open() const noexcept { return state_->settings.redundant && state_->ring_open; }
 Time Master::dc_phase_correction() const noexcept { return state_->phase.correction(); }
 

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -70,13 +69,6 @@ struct RobotCounters {
   std::int64_t dc_difference_ns = 0;  // register 092C, last seen
 };
 
-// What stands in the chain, for people; position order.
-struct ChainDevice {
-  std::uint16_t station_address = 0;
-  std::uint32_t vendor = 0, product = 0;  // 0: not read yet
-  std::optional<std::size_t> robot;       // index in MasterSettings::robots
-};
-
 struct MasterState;
 
 class Master {
@@ -119,7 +111,6 @@ class Master {
   // ---- Segment
   const MasterCounters& counters() const noexcept;
   const Histogram& round_trip() const noexcept;  // of cyclic frames, over the last second
-  std::span<const ChainDevice> chain() const noexcept;
   // Redundant: the ring is open, both halves are reached from their own ends. A robot behind the break that comes new
   // into the chain (switched on, exchanged) is only found when the ring is whole again.
   bool ring_open() const noexcept;

@@ -128,21 +128,7 @@ void MasterState::bind(Robot& robot, Time now) noexcept {
 
 void MasterState::bind(Time now) noexcept {
   for (Robot& robot : robots) bind(robot, now);
-  list_chain();
   if (settings.dc) clocks.start(scan.devices());
-}
-
-void MasterState::list_chain() noexcept {
-  chain.clear();
-  for (const ChainScan::Device& device : scan.devices()) {
-    ChainDevice row{.station_address = device.address,
-                    .vendor = device.identity.vendor,
-                    .product = device.identity.product,
-                    .robot = std::nullopt};
-    const auto robot = std::ranges::find(robots, device.life, &Robot::life);
-    if (robot != robots.end()) row.robot = static_cast<std::size_t>(robot - robots.begin());
-    chain.push_back(row);
-  }
 }
 
 }  // namespace meca::ethercat

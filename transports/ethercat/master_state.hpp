@@ -101,7 +101,6 @@ struct MasterState {
   void bind(Time now) noexcept;
   void bind(Robot& robot, Time now) noexcept;
   const ChainScan::Device* device_of(const Robot& robot, transports::LinkDetail& why) const noexcept;
-  void list_chain() noexcept;
 
   MasterSettings settings;
   std::vector<Robot> robots;
@@ -112,7 +111,6 @@ struct MasterState {
   ChainScan scan;
   Clocks clocks;
   PhaseControl phase;
-  std::vector<ChainDevice> chain;
 
   // Cyclic
   std::uint64_t cycle = 0;

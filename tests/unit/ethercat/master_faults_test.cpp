@@ -240,7 +240,6 @@ TEST(MasterFaults, ACutCableTakesTheRobotsBehindItAndGivesThemBack) {
   EXPECT_EQ(segment.master().station(2).phase(), Station::Phase::kAbsent);
   EXPECT_EQ(segment.master().trouble(2),
             "position 2 is not there: 2 devices answer; check cable and power behind position 1");
-  EXPECT_EQ(segment.master().chain().size(), 2u);
   expect_no_missed_cycle(segment, 3, 2);
   segment.chain().heal(2);
   ASSERT_TRUE(segment.start()) << segment.master().trouble(2);
