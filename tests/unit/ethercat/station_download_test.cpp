@@ -106,13 +106,12 @@ TEST_P(OfSize, AValueArrivesWholeInAsFewMailsAsItTakes) {
 
 // Whatever is lost, and wherever: a mail on its way there, the word that it is there, the answer.
 TEST_P(OfSize, AValueArrivesWholeWhateverIsLost) {
-  for (const auto& [address, how] : {std::pair{0x1000, Loss::kRequest}, {0x1000, Loss::kReply}, {0x1080, Loss::kReply}}) {
+  for (const auto& [address, how] :
+       {std::pair{0x1000, Loss::kRequest}, {0x1000, Loss::kReply}, {0x1080, Loss::kReply}}) {
     for (std::size_t n = 0; n < GetParam().mails; ++n) {
       DownloadRig rig(GetParam().bytes);
       std::size_t left = n;
-      const auto loses = [&](const Access& a) {
-        return a.address == address && left-- == 0 ? how : Loss::kNothing;
-      };
+      const auto loses = [&](const Access& a) { return a.address == address && left-- == 0 ? how : Loss::kNothing; };
       ASSERT_EQ(rig.write(value_of(GetParam().bytes), loses), Outcome::kDone) << n << ": " << rig.trouble();
       EXPECT_EQ(rig.stored(), value_of(GetParam().bytes));
       EXPECT_EQ(rig.server.aborts(), 0u);
@@ -141,8 +140,8 @@ INSTANTIATE_TEST_SUITE_P(Sdo, OfSize,
                          testing::Values(Size{1, 1}, Size{4, 1}, Size{5, 1}, Size{111, 1}, Size{kMostFirst, 1},
                                          Size{kMostFirst + 1, 2}, Size{118, 2}, Size{119, 2}, Size{kMailboxSize, 2},
                                          Size{kMailboxSize + 1, 2}, Size{kMostFirst + kMostSegment, 2},
-                                         Size{kMostFirst + kMostSegment + 1, 3},
-                                         Size{kMostFirst + 2 * kMostSegment, 3}, Size{512, 5}));
+                                         Size{kMostFirst + kMostSegment + 1, 3}, Size{kMostFirst + 2 * kMostSegment, 3},
+                                         Size{512, 5}));
 
 TEST(StationDownload, OfUpToFourBytesIsExpedited) {
   for (const auto& [size, command] : {std::pair{1, 0x2F}, {2, 0x2B}, {3, 0x27}, {4, 0x23}}) {

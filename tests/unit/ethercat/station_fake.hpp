@@ -84,8 +84,9 @@ class Dictionary {
     out = found->second;
     if (!complete) return 0;
     out.resize(2);
-    for (std::uint8_t sub = 1; sub <= number(address.index, 0); ++sub) {
-      const auto entry = objects_.find(key(address.index, sub));
+    const auto most = std::min<std::uint32_t>(number(address.index, 0), 0xFF);
+    for (std::uint32_t sub = 1; sub <= most; ++sub) {
+      const auto entry = objects_.find(key(address.index, static_cast<std::uint8_t>(sub)));
       if (entry != objects_.end()) out.insert(out.end(), entry->second.begin(), entry->second.end());
     }
     return 0;
