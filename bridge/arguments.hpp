@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bridge/config.hpp"
-#include "transports/command_line.hpp"
+#include "cli/command_line.hpp"
 
 namespace meca::bridge {
 

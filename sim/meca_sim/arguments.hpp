@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_line.hpp"
 #include "sim/meca_sim/connection_loss.hpp"
 #include "sim/meca_sim/script.hpp"
-#include "transports/command_line.hpp"
 #include "transports/ethercat/device.hpp"
 #include "transports/ethernet_ip/adapter.hpp"
 
