@@ -63,13 +63,14 @@ void MasterState::give_up_overdue(Time now) noexcept {
     if (frame->use == InFlight::Use::kService) next_service = now + unequal_pause();
     in_flight.release(*frame);
   }
-  // In cycles, not in time: while we stood still ourselves nobody could answer.
-  const Time silence = settings.cycle * static_cast<Time::rep>(cycle - heard);
-  if (any_port() && !silent && silence > std::max(settings.watchdog, kLeastSilence)) {
+  if (any_port() && !silent && silence() > std::max(settings.watchdog, kLeastSilence)) {
     silent = true;
     out_of_reach("no device answers; check the cable to the first robot and its power", now);
   }
 }
+
+// In cycles, not in time: while we stood still ourselves nobody could answer.
+Time MasterState::silence() const noexcept { return settings.cycle * static_cast<Time::rep>(cycle - heard); }
 
 void MasterState::missed_a_copy(const InFlight::Frame& frame) noexcept {
   talking_port = frame.seen[0] ? 0 : 1;

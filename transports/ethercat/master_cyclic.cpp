@@ -10,6 +10,8 @@ namespace {
 // pulled.
 constexpr unsigned kBelieved = 2;
 constexpr unsigned kMissesToAsk = 2;
+// Nobody puts another device into a place faster than that; one that we do not ask for its state would not show it.
+constexpr Time kFastestExchange = std::chrono::milliseconds(100);
 constexpr std::uint16_t kReadOnly = 1;  // of a command that reads and writes
 constexpr std::uint16_t kTimeSize = 8;
 
@@ -129,6 +131,7 @@ std::string_view MasterState::why_not_counted(const Robot& robot) const noexcept
 
 void MasterState::chain_state(std::uint16_t devices, std::uint16_t or_of_states) noexcept {
   if (devices > 0) {
+    if (reached && silence() > kFastestExchange) scan_wanted = true;
     heard = cycle;
     reached = true;
     silent = false;

@@ -68,6 +68,7 @@ struct MasterState {
   void dispatch(const InFlight::Frame& frame, Bytes reply, Time now) noexcept;
   void lost(const InFlight::Frame& frame, Time now) noexcept;
   Time unequal_pause() noexcept;
+  Time silence() const noexcept;  // since somebody in the chain last answered
   void missed_a_copy(const InFlight::Frame& frame) noexcept;
   void ring_is(bool open, std::size_t reached_from_primary) noexcept;
   void out_of_reach(std::string_view why, Time now) noexcept;

@@ -215,6 +215,23 @@ TEST(MasterStart, AForeignDeviceInTheMiddleIsLeftAloneAndItsNeighboursRun) {
   EXPECT_EQ(segment.device(1).state(), AlState::kInit);
 }
 
+// In less time than the watchdog, so that nobody was out of reach meanwhile.
+TEST(MasterStart, ARobotInThePlaceOfAForeignDeviceIsFound) {
+  MasterSettings settings = settings_for(1);
+  settings.watchdog = 1s;
+  std::vector<DeviceSettings> devices(2);
+  devices[0].vendor = 2;
+  Segment segment(settings, devices);
+  segment.chain() = Chain({&segment.device(0)});
+  segment.run(2s);
+  ASSERT_THAT(segment.master().trouble(0), HasSubstr("not a Meca500"));
+  segment.fate = [](std::size_t) { return Fate{.lost = true}; };
+  segment.run(500ms);
+  segment.fate = {};
+  segment.chain() = Chain({&segment.device(1)});
+  EXPECT_TRUE(segment.start()) << segment.master().trouble(0);
+}
+
 TEST(MasterStart, AnotherRobotOfTheSameMakerIsNamed) {
   std::vector<DeviceSettings> devices(1);
   devices[0].product = 0x04DC5500;
