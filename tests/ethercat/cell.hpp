@@ -11,6 +11,13 @@
 
 namespace meca::test {
 
+// Of a status that meca-ctl printed.
+inline int images(const nlohmann::json& status) { return status["bridge_status"]["fresh_images"].get<int>(); }
+inline int counter(const nlohmann::json& status, const char* name) {
+  const auto& counters = status["bridge_status"]["transport_counters"];
+  return counters.empty() ? 0 : counters.at(name).get<int>();  // none at first; a name that there is not is a mistake
+}
+
 class EthercatCell : public testing::Test {
  protected:
   static constexpr const char* kInterface = "meca0";
@@ -88,10 +95,6 @@ class EthercatCell : public testing::Test {
         robot));
     EXPECT_EQ(after["target_joint_set"]["joints"], before["target_joint_set"]["joints"]);
     EXPECT_EQ(after["motion_status"]["fifo_space"], 13000);
-  }
-  static int images(const nlohmann::json& status) { return status["bridge_status"]["fresh_images"].get<int>(); }
-  static int counter(const nlohmann::json& status, const char* name) {
-    return status["bridge_status"]["transport_counters"][name].get<int>();
   }
   int losses(const std::string& robot) { return bridge_->status(robot)["bridge_status"]["link_losses"].get<int>(); }
 

@@ -20,12 +20,6 @@ struct Fault {
 };
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.words; }
 
-int counter_of(const Status& status, const char* name) {
-  const auto& counters = status["bridge_status"]["transport_counters"];
-  return counters.is_object() ? counters.value(name, 0) : 0;  // none before the link is up
-}
-int images_of(const Status& status) { return status["bridge_status"]["fresh_images"].get<int>(); }
-
 class FaultOfASegment : public EthercatCell, public testing::WithParamInterface<Fault> {};
 
 TEST_P(FaultOfASegment, IsSeenByTheBridgeUntilItIsOff) {
@@ -48,7 +42,7 @@ std::string name_of(const testing::TestParamInfo<Fault>& info) {
 
 template <const char* Name, int More>
 bool more(const Status& now, const Status& before) {
-  return counter_of(now, Name) >= counter_of(before, Name) + More;
+  return counter(now, Name) >= counter(before, Name) + More;
 }
 constexpr char kLost[] = "lost_frames", kLate[] = "late_frames", kUnexpected[] = "unexpected_frames",
                kMalformed[] = "malformed_frames", kMisses[] = "working_counter_misses";
@@ -59,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"duplicate", more<kUnexpected, 100>}, Fault{"corrupt", more<kMalformed, 10>},
                     Fault{"working counter -1", more<kMisses, 20>},
                     Fault{"emergency 0xFF00",
-                          [](const Status& now, const Status&) { return counter_of(now, "emergency_code") == 0xFF00; }},
+                          [](const Status& now, const Status&) { return counter(now, "emergency_code") == 0xFF00; }},
                     Fault{"power off",
                           [](const Status& now, const Status&) {
                             return now["bridge_status"]["link_detail"].get<std::string>().find("no device answers") !=
@@ -98,7 +92,7 @@ TEST_F(Segment, ThatIsFrozenGoesOnWithOldInputs) {
   Status first = bridge.status();
   EXPECT_TRUE(bridge.until([&](const Status& now) {
     if (time(now) != time(first)) first = now;
-    return images_of(now) >= images_of(first) + 100;
+    return images(now) >= images(first) + 100;
   }));
   ASSERT_EQ(sim.say("thaw"), "ok: I/O is handled");
   EXPECT_TRUE(bridge.until([&](const Status& now) { return time(now) != time(first); }));
@@ -109,9 +103,9 @@ TEST_F(Segment, WhoseCableBackIsCutIsAnOpenRing) {
   BridgeProcess& bridge = start_bridge(2, ", redundant_interface: ring0");
   ASSERT_TRUE(bridge.until_up("arm1") && bridge.until_up("arm2"));
   ASSERT_EQ(sim.say("cut behind", "arm2"), "ok: the cable behind this robot is cut");
-  EXPECT_TRUE(bridge.until([](const Status& now) { return counter_of(now, "ring_open") == 1; }));
+  EXPECT_TRUE(bridge.until([](const Status& now) { return counter(now, "ring_open") == 1; }));
   ASSERT_EQ(sim.say("heal behind", "arm2"), "ok: the cable behind this robot is whole");
-  EXPECT_TRUE(bridge.until([](const Status& now) { return counter_of(now, "ring_open") == 0; }));
+  EXPECT_TRUE(bridge.until([](const Status& now) { return counter(now, "ring_open") == 0; }));
   EXPECT_EQ(losses("arm1") + losses("arm2"), 0);
 }
 
@@ -119,7 +113,7 @@ TEST_F(Segment, WhoseCableBackIsCutIsAnOpenRing) {
 TEST_F(Segment, WithAClockThatDriftsShowsTheDifferenceUntilItIsOver) {
   Simulator& sim = start_robots(2);
   BridgeProcess& bridge = start_bridge(2, ", dc: true");
-  const auto difference = [](const Status& now) { return std::abs(counter_of(now, "dc_difference_ns")); };
+  const auto difference = [](const Status& now) { return std::abs(counter(now, "dc_difference_ns")); };
   const auto together = [&](const Status& now) { return difference(now) < 200; };
   ASSERT_TRUE(bridge.until_up("arm2") && bridge.until(together, "arm2")) << bridge.status("arm2");
   ASSERT_EQ(sim.say("clock drift 1000", "arm2"), "ok: the clock drifts");
